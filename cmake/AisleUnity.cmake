@@ -1,0 +1,7 @@
+# Unity: an installed copy (UNITY_ROOT or the system), or the one tools/setup.sh unpacked into build/deps/unity.
+find_path(UNITY_DIR unity.c HINTS ${UNITY_ROOT} ${CMAKE_SOURCE_DIR}/build/deps/unity /usr/src/unity /usr/local/src/unity
+          PATH_SUFFIXES src REQUIRED)
+add_library(unity STATIC ${UNITY_DIR}/unity.c)
+target_include_directories(unity SYSTEM PUBLIC ${UNITY_DIR})
+target_compile_definitions(unity PUBLIC UNITY_INCLUDE_DOUBLE UNITY_SUPPORT_64)
+target_compile_options(unity PRIVATE -w)

@@ -1,0 +1,159 @@
+// planner.h - the whole planner behind one door: messages in, proved paths and reasons out. Level: public.
+//
+// Use: size a block, init, submit messages as they arrive, step with a work budget, pull events.
+//
+//     size_t size = aisle_planner_memsize(&config.limits);
+//     aisle_planner *planner;
+//     aisle_planner_init(block, size, &config, &planner);
+//     aisle_planner_submit(planner, now_us, &(aisle_input){.kind = AISLE_INPUT_QUERY, .query = &query});
+//     while (aisle_planner_step(planner, now_us, 1000) == AISLE_BUSY) {
+//         aisle_event event;
+//         while (aisle_planner_next_event(planner, &event)) { send(event.channel, event.bytes, event.size); }
+//     }
+//
+// Memory: the caller's one block, nothing else; no allocation, clock, file, socket, thread or recursion.
+// Time: now_us is the caller's clock, microseconds since the epoch (the unit of every utime); a call
+// with an earlier time than the last is read as the last. Nothing but lease and age depends on it: the
+// paths depend on the inputs and their order alone, however the work is cut into steps.
+// Order: inputs take effect in the order of submit(). A request (goal list, query) is planned on the
+// layout and vehicle in force when its turn comes; a layout that completes while a request is being
+// planned takes effect right after it.
+// Threads: one planner, one thread at a time. Planners share nothing.
+#ifndef AISLE_PLANNER_H
+#define AISLE_PLANNER_H
+
+#include "aisle/limits.h"
+#include "aisle/messages.h"
+#include "aisle/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define AISLE_PROTOCOL 1               // status_msg.protocol
+#define AISLE_LEASE_US 1000000         // a path is valid this long after each sending
+#define AISLE_LEASE_RESEND_US 500000   // and sent again this often
+#define AISLE_WORK_UNITS_DEFAULT 2000000
+
+typedef struct aisle_planner aisle_planner; // lies inside the caller's block
+
+// Zeroed = the documented defaults.
+typedef struct aisle_config {
+    aisle_limits limits;
+    int64_t boot_id;          // told to receivers; anything that differs from boot to boot
+    int32_t work_units;       // budget of a request that names none; 0 = AISLE_WORK_UNITS_DEFAULT
+    aisle_vehicle_msg vehicle; // the vehicle until a message brings one; used if has_vehicle
+    bool has_vehicle;
+} aisle_config;
+
+typedef enum aisle_input_kind {
+    AISLE_INPUT_LAYOUT,
+    AISLE_INPUT_LAYOUT_PATCH,
+    AISLE_INPUT_GRID,
+    AISLE_INPUT_VEHICLE,
+    AISLE_INPUT_POSE,
+    AISLE_INPUT_GOALS,
+    AISLE_INPUT_QUERY,
+    AISLE_INPUT_OBSTACLES,
+    AISLE_INPUT_COMMAND
+} aisle_input_kind;
+
+// One decoded message; only the pointer named by kind is read, and only during submit().
+typedef struct aisle_input {
+    aisle_input_kind kind;
+    union {
+        const aisle_layout_msg *layout;
+        const aisle_layout_patch_msg *layout_patch;
+        const aisle_grid_chunk_msg *grid;
+        const aisle_vehicle_msg *vehicle;
+        const aisle_pose_msg *pose;
+        const aisle_goal_list_msg *goals;
+        const aisle_query_msg *query;
+        const aisle_obstacles_msg *obstacles;
+        const aisle_command_msg *command;
+    };
+} aisle_input;
+
+typedef enum aisle_event_kind {
+    AISLE_EVENT_PATH,  // for _PATH: a new path, the same one with its lease renewed, or a revocation
+    AISLE_EVENT_REPLY  // for _REPLY: the answer to a query
+} aisle_event_kind;
+
+// An encoded path_t, proved by the verifier or with status NONE. Bytes stay valid until the next
+// call that takes a non-const planner.
+typedef struct aisle_event {
+    aisle_event_kind kind;
+    const uint8_t *bytes;
+    size_t size;
+} aisle_event;
+
+// Counters since init; they never decrease. Index into aisle_planner_counters().
+typedef enum aisle_counter {
+    AISLE_COUNTER_INPUTS,            // submit() calls that were taken
+    AISLE_COUNTER_REJECTED,          // messages refused, whatever the cause
+    AISLE_COUNTER_DUPLICATES,        // messages already held, ignored
+    AISLE_COUNTER_LAYOUTS,           // layouts that took effect
+    AISLE_COUNTER_QUERIES,           // queries answered
+    AISLE_COUNTER_GOAL_LISTS,        // goal lists answered
+    AISLE_COUNTER_PATHS,             // proved paths handed out, lease renewals not counted
+    AISLE_COUNTER_NO_PATHS,          // answers without a path
+    AISLE_COUNTER_VERIFY_FAILED,     // candidates the verifier turned down
+    AISLE_COUNTER_NODES,             // grid nodes expanded
+    AISLE_COUNTER_SWARM_EVALS,       // candidate paths scored by the swarm
+    AISLE_COUNTER_VERIFY_INTERVALS,  // intervals of motion the verifier looked at
+    AISLE_COUNTER_WORK_UNITS,        // work units spent
+    AISLE_COUNTER_OPEN_NODES_MAX,    // high-water mark of the grid search's open list
+    AISLE_COUNTER_CCD_CALLS,         // narrow-phase tests
+    AISLE_COUNTER_CCD_SUPPORT_MAX,   // most support calls of one narrow-phase test
+    AISLE_COUNTER_COUNT
+} aisle_counter;
+
+typedef struct aisle_memory_row { // one line of aisled --memory
+    const char *name;             // of the pool
+    size_t bytes;
+    size_t used_max; // high-water mark, bytes; 0 where the pool is used whole
+} aisle_memory_row;
+
+// Bytes of the block for these limits; 0 if a limit is out of its range. O(1).
+size_t aisle_planner_memsize(const aisle_limits *limits);
+
+// Carves `memory` (aligned for any type; size >= memsize) and zeroes it. *planner points into it.
+// AISLE_ERR_ARG: NULL, misaligned, a limit or the vehicle is out of range. AISLE_ERR_CAPACITY: too small.
+aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *config, aisle_planner **planner);
+
+// Takes one message. AISLE_OK: taken, or a duplicate. AISLE_PARTIAL: taken, more parts are wanted.
+// AISLE_BUSY: cannot be taken now, nothing changed: step() and submit it again. AISLE_ERR_DATA: refused
+// whole, nothing changed but the counters and status().cause. A request that cannot be planned is
+// taken and answered by an event with its cause. O(message).
+aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const aisle_input *input);
+
+// Spends about `work_units` (never more than one indivisible piece above it, at most 4096 units).
+// AISLE_BUSY: more to do, or events wait to be pulled. AISLE_OK: idle until the next submit() or deadline.
+aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t work_units);
+
+// Pulls the next event. false: none.
+bool aisle_planner_next_event(aisle_planner *self, aisle_event *event);
+
+// When step() next has something to do by itself (lease, pose timeout); INT64_MAX: never.
+int64_t aisle_planner_next_deadline(const aisle_planner *self);
+
+// The heartbeat as it stands at now_us; seq is the caller's to set. O(1).
+void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status);
+
+// [AISLE_COUNTER_COUNT]; valid as long as the planner.
+const int64_t *aisle_planner_counters(const aisle_planner *self);
+
+// Rows of the memory table, largest pools by name; their bytes sum up to memsize(). Returns the count.
+size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, size_t capacity);
+
+// Text of a cause of status_msg/path_msg ("NO_PATH"); "?" for an unknown one. O(1).
+const char *aisle_cause_name(int16_t cause);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,24 @@
+// status.h - what every Aisle function answers. Level: public.
+//
+// Below 0: the caller did something wrong, nothing was changed. 0 and above: how it ended.
+// "No path" is an answer (a path message with a cause), not an error.
+#ifndef AISLE_STATUS_H
+#define AISLE_STATUS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum aisle_status {
+    AISLE_OK = 0,            // done
+    AISLE_BUSY = 1,          // not done yet: call again
+    AISLE_PARTIAL = 2,       // ended early with a usable result, or accepted and more parts are wanted
+    AISLE_ERR_ARG = -1,      // an argument breaks a rule stated in the header
+    AISLE_ERR_CAPACITY = -2, // a pool, buffer or block is too small
+    AISLE_ERR_DATA = -3      // a message was refused; its cause says why
+} aisle_status;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,46 @@
+// shape.h - rounded convex shapes: the hull of points, grown by a radius. Level 1.
+//
+// A disc is one point and a radius, a capsule two points, a footprint its polygon (radius 0 or more).
+// Metres. All functions are exact up to rounding (errors stated), O(vertices) or O(n * m).
+#ifndef AISLE_WORLD_SHAPE_H
+#define AISLE_WORLD_SHAPE_H
+
+#include "base/vec.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define AISLE_SHAPE_VERTICES_MAX 16
+#define AISLE_SHAPE_COORD_MAX 1e5 // m; beyond it nothing is accepted
+
+// A view: the vertices belong to somebody else. Convex, counter-clockwise, n in [1, 32]; collinear and
+// repeated vertices are allowed.
+typedef struct aisle_convex {
+    const aisle_vec2 *v;
+    uint32_t n;
+    double radius; // >= 0
+} aisle_convex;
+
+// True if finite, within AISLE_SHAPE_COORD_MAX, n in [3, max_n], counter-clockwise convex with an area
+// above 1e-8 m2. Tolerates collinear and repeated vertices, and dents up to 1e-9 m.
+bool aisle_convex_is_valid(const aisle_vec2 *v, uint32_t n, uint32_t max_n);
+
+// Box around the shape, radius included.
+aisle_aabb aisle_convex_aabb(const aisle_convex *shape);
+
+// Gap between a point and the shape (0 inside or touching). Error below 1e-12 * coordinates.
+double aisle_convex_point_gap(const aisle_convex *shape, aisle_vec2 p);
+
+// Gap between two shapes (0 if they touch or overlap). O(n * m).
+double aisle_convex_gap(const aisle_convex *a, const aisle_convex *b);
+
+// Gap between two plain segments.
+double aisle_segment_gap(aisle_vec2 a0, aisle_vec2 a1, aisle_vec2 b0, aisle_vec2 b1);
+
+// Writes the points of `shape` (body frame) placed at pose to out[n].
+void aisle_convex_place(const aisle_vec2 *v, uint32_t n, aisle_pose2 pose, aisle_vec2 *out);
+
+// Convex hull (counter-clockwise, no collinear points) of n <= 64 points into out[n]; returns its
+// size. Andrew's monotone chain; ties by x, then y. O(n log n), no recursion.
+uint32_t aisle_convex_hull(const aisle_vec2 *points, uint32_t n, aisle_vec2 *out);
+#endif
