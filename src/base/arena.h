@@ -15,7 +15,7 @@
 typedef struct aisle_arena {
     unsigned char *base; // NULL: measuring
     size_t size;         // of the block; SIZE_MAX when measuring
-    size_t used;         // so far, padding included
+    size_t used;         // so far, padding included: a multiple of AISLE_ARENA_ALIGN
     bool overflow;       // a take did not fit, or its size was not representable
 } aisle_arena;
 
@@ -25,7 +25,8 @@ aisle_arena aisle_arena_measure(void);
 // An arena over `memory`, which must be aligned to AISLE_ARENA_ALIGN; zeroed here, once.
 aisle_arena aisle_arena_over(void *memory, size_t size);
 
-// count * size bytes, aligned to AISLE_ARENA_ALIGN. NULL when measuring or when it does not fit
-// (then overflow is set and stays). A count of 0 takes nothing and answers NULL.
+// count * size bytes, zeroed, aligned and padded to AISLE_ARENA_ALIGN. NULL when measuring or when it does
+// not fit (then overflow is set and stays, and all later takes answer NULL). A count or size of 0 takes
+// nothing and answers NULL. After the same takes, `used` of a measuring and of a carving arena are equal.
 void *aisle_arena_take(aisle_arena *self, size_t count, size_t size);
 #endif

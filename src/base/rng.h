@@ -2,6 +2,7 @@
 //
 // Method: SplitMix64 to spread the seed, then PCG-XSH-RR 64/32 (O'Neill 2014, "PCG: A Family of Simple
 // Fast Space-Efficient Statistically Good Algorithms"). State is one word: copy it to fork a stream.
+// Time: O(1); below() draws again with probability < n / 2^32. Memory: none.
 #ifndef AISLE_BASE_RNG_H
 #define AISLE_BASE_RNG_H
 

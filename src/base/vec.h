@@ -17,22 +17,44 @@ typedef struct aisle_aabb { // axis-aligned box; empty if lo > hi in a component
     aisle_vec2 lo, hi;
 } aisle_aabb;
 
-static inline aisle_vec2 aisle_vec2_of(double x, double y) { return (aisle_vec2){x, y}; }
-static inline aisle_vec2 aisle_vec2_add(aisle_vec2 a, aisle_vec2 b) { return (aisle_vec2){a.x + b.x, a.y + b.y}; }
-static inline aisle_vec2 aisle_vec2_sub(aisle_vec2 a, aisle_vec2 b) { return (aisle_vec2){a.x - b.x, a.y - b.y}; }
-static inline aisle_vec2 aisle_vec2_scale(aisle_vec2 a, double k) { return (aisle_vec2){a.x * k, a.y * k}; }
-static inline double aisle_vec2_dot(aisle_vec2 a, aisle_vec2 b) { return a.x * b.x + a.y * b.y; }
+static inline aisle_vec2 aisle_vec2_of(double x, double y) {
+    return (aisle_vec2){x, y};
+}
+static inline aisle_vec2 aisle_vec2_add(aisle_vec2 a, aisle_vec2 b) {
+    return (aisle_vec2){a.x + b.x, a.y + b.y};
+}
+static inline aisle_vec2 aisle_vec2_sub(aisle_vec2 a, aisle_vec2 b) {
+    return (aisle_vec2){a.x - b.x, a.y - b.y};
+}
+static inline aisle_vec2 aisle_vec2_scale(aisle_vec2 a, double k) {
+    return (aisle_vec2){a.x * k, a.y * k};
+}
+static inline double aisle_vec2_dot(aisle_vec2 a, aisle_vec2 b) {
+    return a.x * b.x + a.y * b.y;
+}
 // z of the cross product: positive if b is counter-clockwise of a.
-static inline double aisle_vec2_cross(aisle_vec2 a, aisle_vec2 b) { return a.x * b.y - a.y * b.x; }
-static inline double aisle_vec2_length(aisle_vec2 a) { return sqrt(a.x * a.x + a.y * a.y); }
-static inline double aisle_vec2_distance(aisle_vec2 a, aisle_vec2 b) { return aisle_vec2_length(aisle_vec2_sub(a, b)); }
+static inline double aisle_vec2_cross(aisle_vec2 a, aisle_vec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+static inline double aisle_vec2_length(aisle_vec2 a) {
+    return sqrt(a.x * a.x + a.y * a.y);
+}
+static inline double aisle_vec2_distance(aisle_vec2 a, aisle_vec2 b) {
+    return aisle_vec2_length(aisle_vec2_sub(a, b));
+}
 // a + t (b - a)
 static inline aisle_vec2 aisle_vec2_lerp(aisle_vec2 a, aisle_vec2 b, double t) {
     return (aisle_vec2){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
 }
-static inline double aisle_min(double a, double b) { return a < b ? a : b; }
-static inline double aisle_max(double a, double b) { return a > b ? a : b; }
-static inline double aisle_clamp(double x, double lo, double hi) { return x < lo ? lo : (x > hi ? hi : x); }
+static inline double aisle_min(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double aisle_max(double a, double b) {
+    return a > b ? a : b;
+}
+static inline double aisle_clamp(double x, double lo, double hi) {
+    return x < lo ? lo : (x > hi ? hi : x);
+}
 
 static inline bool aisle_aabb_overlap(aisle_aabb a, aisle_aabb b) {
     return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y;
