@@ -389,7 +389,7 @@ def member_comment(member: Member) -> str:
         parts.append("0 or 1")
     if member.rows_slot >= 0:
         parts.append(f"the first {member.dims[0]} count")
-    elif member.slot >= 0:
+    elif member.slot >= 0 and not member.behind:
         parts.append(f"0..{member.bound}")
     return "; ".join(parts)
 
