@@ -2,4 +2,4 @@
 add_library(aisle_warnings INTERFACE)
 target_compile_options(aisle_warnings INTERFACE
   -pedantic -Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion -Wvla -Wundef
-  -Wstrict-prototypes -Wmissing-prototypes -Werror -ffp-contract=off)
+  -Wstrict-prototypes -Wmissing-prototypes $<$<BOOL:${AISLE_WERROR}>:-Werror> -ffp-contract=off)

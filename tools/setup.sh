@@ -88,7 +88,7 @@ fetch_unity() {
     tarball=$(find "$work/download" -name 'ntpsec_*.orig.tar.*' ! -name '*.asc')
     [ -f "$tarball" ] || die "the source package ntpsec did not arrive; set UNITY_ROOT to a copy of Unity"
     mkdir -p "$work/unity"
-    tar -xf "$tarball" -C "$work/unity" --strip-components=3 --wildcards '*/tests/unity/*'
+    tar --no-same-owner -xf "$tarball" -C "$work/unity" --strip-components=3 --wildcards '*/tests/unity/*'
     [ -f "$work/unity/unity.c" ] || die "ntpsec no longer carries tests/unity; set UNITY_ROOT to a copy of Unity"
     rm -rf build/deps/unity
     mv "$work/unity" build/deps/unity
