@@ -11,7 +11,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # What the build, the tests and the gates call. libclang-rt: sanitizers and libFuzzer. liblcm-java: used where javac is.
 packages=(cmake ninja-build gcc g++ clang clang-format llvm libclang-rt-14-dev libc6-dev liblcm-dev liblcm-bin
     liblcm-java libccd-dev libinih-dev python3 python3-venv iproute2 util-linux)
-python_packages=(lcm==1.5.3 numpy PyYAML Pillow shapely matplotlib pytest rich)
+python_packages=(lcm==1.5.3 -e '.[test]') # the rest is in pyproject.toml
 
 say() { printf 'setup: %s\n' "$*"; }
 die() {
@@ -103,14 +103,11 @@ install_python() {
     fi
     say "installing Python packages into build/venv"
     build/venv/bin/python -m pip install -q --disable-pip-version-check "${python_packages[@]}" </dev/null
-    if [ -f pyproject.toml ]; then
-        build/venv/bin/python -m pip install -q --disable-pip-version-check -e . </dev/null
-    fi
 }
 
-# What the Python environment was made from: this file, the package's description and the message types.
+# What the Python environment is made from: its place, this file, the package's description, the message types.
 python_stamp() {
-    { pwd && cat tools/setup.sh && cat pyproject.toml lcmtypes/*.lcm 2>/dev/null || true; } | sha256sum | cut -c1-64
+    { pwd && cat tools/setup.sh pyproject.toml setup.py lcmtypes/*.lcm; } | sha256sum | cut -c1-64
 }
 
 mkdir -p build/deps
