@@ -88,13 +88,17 @@ static void keep_count(walk *self, const aisle_wire_field *field, uint32_t value
 
 // ---- bytes
 
-static uint16_t load16(const uint8_t *at) { return (uint16_t)((uint32_t)at[0] << 8 | at[1]); }
+static uint16_t load16(const uint8_t *at) {
+    return (uint16_t)((uint32_t)at[0] << 8 | at[1]);
+}
 
 static uint32_t load32(const uint8_t *at) {
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-static uint64_t load64(const uint8_t *at) { return (uint64_t)load32(at) << 32 | load32(at + 4); }
+static uint64_t load64(const uint8_t *at) {
+    return (uint64_t)load32(at) << 32 | load32(at + 4);
+}
 
 static void store16(uint8_t *at, uint16_t value) {
     at[0] = (uint8_t)(value >> 8);
@@ -246,7 +250,9 @@ static bool check_run(walk *at, const uint8_t *bytes, const run *what, aisle_msg
 
 // ---- decoding
 
-static bool is_type(aisle_msg_type type) { return (uint32_t)type < AISLE_MSG_COUNT; }
+static bool is_type(aisle_msg_type type) {
+    return (uint32_t)type < AISLE_MSG_COUNT;
+}
 
 static bool check_body(aisle_msg_type type, const uint8_t *bytes, size_t size, aisle_msg_fault *fault) {
     walk at = {.depth = 0};
@@ -326,7 +332,7 @@ int16_t aisle_msg_fault_cause(const aisle_msg_fault *fault) {
 
 // ---- encoding
 
-// Each run is packed first and then checked as the wire's bytes: what goes out is judged by the rules for what comes in.
+// Each run is packed first and then checked as the wire's bytes: one set of rules for what goes out and what comes in.
 aisle_status aisle_msg_encode_body(aisle_msg_type type, const void *msg, void *out, size_t capacity, size_t *size) {
     if (!is_type(type) || msg == NULL || out == NULL || size == NULL) {
         return AISLE_ERR_ARG;
@@ -401,9 +407,13 @@ bool aisle_msg_field_offset(aisle_msg_type type, const char *name, size_t *offse
     return false;
 }
 
-void aisle_msg_put_int64(void *at, int64_t value) { store64(at, (uint64_t)value); }
+void aisle_msg_put_int64(void *at, int64_t value) {
+    store64(at, (uint64_t)value);
+}
 
-const char *aisle_msg_name(aisle_msg_type type) { return is_type(type) ? aisle_wire_types[type].name : "?"; }
+const char *aisle_msg_name(aisle_msg_type type) {
+    return is_type(type) ? aisle_wire_types[type].name : "?";
+}
 
 size_t aisle_msg_max_size(aisle_msg_type type) {
     if (!is_type(type)) {
@@ -413,6 +423,10 @@ size_t aisle_msg_max_size(aisle_msg_type type) {
     return most < AISLE_MSG_DATAGRAM_MAX ? most : AISLE_MSG_DATAGRAM_MAX;
 }
 
-size_t aisle_msg_struct_size(aisle_msg_type type) { return is_type(type) ? aisle_wire_types[type].struct_size : 0; }
+size_t aisle_msg_struct_size(aisle_msg_type type) {
+    return is_type(type) ? aisle_wire_types[type].struct_size : 0;
+}
 
-uint64_t aisle_msg_fingerprint(aisle_msg_type type) { return is_type(type) ? aisle_wire_types[type].fingerprint : 0; }
+uint64_t aisle_msg_fingerprint(aisle_msg_type type) {
+    return is_type(type) ? aisle_wire_types[type].fingerprint : 0;
+}

@@ -4,8 +4,8 @@
 // nested structs without a fingerprint of their own. lcm-gen's decoders allocate from counts on the wire; these walk
 // generated tables (wire/tables.h) instead and take hostile bytes: every length and count is checked before it is used.
 //
-// What a valid message is, in both directions: counts within [0, bound], every float and double finite, booleans 0 or 1,
-// right fingerprint, no byte missing or left over, at most AISLE_MSG_DATAGRAM_MAX bytes. A message that decodes
+// What a valid message is, in both directions: counts within [0, bound], every float and double finite, booleans 0 or
+// 1, right fingerprint, no byte missing or left over, at most AISLE_MSG_DATAGRAM_MAX bytes. A message that decodes
 // encodes to the very same bytes. Ranges of the other fields (ids, kinds, shapes) are for those who use them.
 //
 // Memory: none but the caller's; below 400 bytes of stack; no allocation, no recursion. Any alignment of bytes.
@@ -56,9 +56,9 @@ aisle_status aisle_msg_decode(aisle_msg_type type, const void *bytes, size_t siz
 // The same checks without writing anything.
 aisle_status aisle_msg_check(aisle_msg_type type, const void *bytes, size_t size, aisle_msg_fault *fault);
 
-// Writes *msg to out and its length to *size. AISLE_ERR_DATA: not a valid message (see above). AISLE_ERR_CAPACITY: longer
-// than `capacity` or AISLE_MSG_DATAGRAM_MAX. AISLE_ERR_ARG: no such type, or NULL. On error *size is unchanged and
-// out[0..capacity) undefined. out must not overlap *msg. Reads array entries up to their count only.
+// Writes *msg to out and its length to *size. AISLE_ERR_DATA: not a valid message (see above). AISLE_ERR_CAPACITY:
+// longer than `capacity` or AISLE_MSG_DATAGRAM_MAX. AISLE_ERR_ARG: no such type, or NULL. On error *size is unchanged
+// and out[0..capacity) undefined. out must not overlap *msg. Reads array entries up to their count only.
 aisle_status aisle_msg_encode(aisle_msg_type type, const void *msg, void *out, size_t capacity, size_t *size);
 
 // As nested in another message: without the fingerprint. For checksums over polygons or waypoints as encoded.
@@ -71,8 +71,9 @@ bool aisle_msg_field_offset(aisle_msg_type type, const char *name, size_t *offse
 // Overwrites an encoded int64_t, e.g. a utime found by aisle_msg_field_offset().
 void aisle_msg_put_int64(void *at, int64_t value);
 
-// Of a type; 0 or "?" for none. name: as in its .lcm file ("path_t"). max_size: a buffer of that many bytes never is too
-// small for what encode or decode accepts. struct_size: sizeof of the C struct. fingerprint: as lcm-gen computes it.
+// Of a type; 0 or "?" for none. name: as in its .lcm file ("path_t"). max_size: a buffer of that many bytes never is
+// too small for what encode or decode accepts. struct_size: sizeof of the C struct. fingerprint: as lcm-gen computes
+// it.
 const char *aisle_msg_name(aisle_msg_type type);
 size_t aisle_msg_max_size(aisle_msg_type type);
 size_t aisle_msg_struct_size(aisle_msg_type type);
