@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Stack bound of the core: the deepest sum of frames over gcc's own call graph. Also proves: no recursion, no alloca.
 
-    stack.py DIR... [--limit BYTES]    DIR: holds *.ci files of `gcc -fcallgraph-info=su,da`
+    stack.py DIR... [--limit BYTES]     DIR: holds *.ci files of `gcc -fcallgraph-info=su,da`
+    stack.py DIR... --header FILE       writes the bound as a macro, or none if it is not proved; exit 0
 
 Calls through pointers are bounded by what inlets.txt beside this file lists for the caller; a caller that is missing
 there fails the gate. Functions outside the archive count with the bytes of EXTERNAL, measured or stated there.
@@ -154,11 +155,21 @@ def report(graph, depth, deepest):
     return lines, entries[worst]
 
 
+def write_header(path, bound, problems):
+    """The bound as a macro for the daemon to print; nothing if there are problems. Written only if it changes."""
+    text = "// Made by tools/gates/stack.py from this build's call graph.\n"
+    text += f"#define AISLE_STACK_BOUND {bound}\n" if not problems else "".join(f"// {p}\n" for p in problems)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.is_file() or path.read_text() != text:
+        path.write_text(text)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("directories", nargs="+", type=Path)
     parser.add_argument("--inlets", type=Path, default=Path(__file__).with_name("inlets.txt"))
     parser.add_argument("--limit", type=int, default=0, help="bytes; 0: print only")
+    parser.add_argument("--header", type=Path)
     arguments = parser.parse_args()
     files = sorted(f for d in arguments.directories for f in d.rglob("*.ci"))
     if not files:
@@ -167,6 +178,9 @@ def main():
     inlets = read_inlets(arguments.inlets.read_text())
     graph, depth, deepest, problems = analyse([f.read_text() for f in files], inlets)
     lines, bound = report(graph, depth, deepest)
+    if arguments.header:
+        write_header(arguments.header, bound, problems)
+        return 0
     print("\n".join(lines))
     if arguments.limit and bound > arguments.limit:
         problems.append(f"the bound is {bound} bytes, limit {arguments.limit}")
