@@ -217,7 +217,7 @@ static void test_entries_behind_a_count_are_neither_read_nor_written(void) {
     size_t size = 0, second = 0;
     fill_message(AISLE_MSG_GOAL_LIST, &msg, FILL_FULL_OUTER, 5);
     msg.goal_list.num_goals = 2;
-    msg.goal_list.goals[2].x = NAN;
+    msg.goal_list.goals[2].x = (double)NAN;
     TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_msg_encode(AISLE_MSG_GOAL_LIST, &msg, bytes, ROOM, &size));
     memset(&back, 0xA5, sizeof back);
     memset(&keep, 0xA5, sizeof keep);
