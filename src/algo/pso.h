@@ -5,12 +5,15 @@
 // r1, r2 uniform in [0,1) per component; p the particle's best point, g the swarm's best.
 // FALLING (Shi & Eberhart 1998): w falls linearly from w_start to w_end over the run, c1 = c2 = 2 by default.
 // CONSTRICTION (Clerc & Kennedy 2002, doi:10.1109/4235.985692): w = 0.729844, c1 = c2 = 1.49618.
-// Ours, not theirs: x is clamped to the box and the clamped component of v is zeroed; |v| is limited to half the box;
+// Ours, not theirs: x is clamped to the box and the clamped component of v is zeroed; |v| is limited to half the box
+// in each component; particles start at rest (Engelbrecht 2012) and follow one another (g is renewed after each
+// evaluation, not after each round); until the swarm has seen an allowed point its particles are drawn anew;
 // costs are pairs, compared first by violation, then by value (feasibility first: Deb 2000), never added up.
 // The first particle starts at the caller's guess, so the result is never worse than the guess.
 //
 // Memory: none allocated. The caller owns self, cfg, lo, hi, guess and work until the run ends.
-// Time: step() is O(evals * dim) plus `evals` calls of cost(). No recursion. Objects share nothing.
+// Time: start() O(particles * dim); step() O(evals * dim) plus `evals` calls of cost(). No recursion. Objects share
+// nothing.
 // Determinism: same cfg and seed give the same bits, however the run is cut into steps.
 #ifndef AISLE_ALGO_PSO_H
 #define AISLE_ALGO_PSO_H
@@ -31,12 +34,11 @@
 #define AISLE_PSO_PARTICLES_MAX 256
 
 // Floats of scratch for one run: x, v, best x and best cost (2) of every particle, and the global best.
-#define AISLE_PSO_WORK_LEN(dim, particles) \
-    ((size_t)(particles) * (3U * (size_t)(dim) + 2U) + (size_t)(dim))
+#define AISLE_PSO_WORK_LEN(dim, particles) ((size_t)(particles) * (3U * (size_t)(dim) + 2U) + (size_t)(dim))
 
 typedef struct aisle_pso_cost { // smaller is better: violation first, then value
-    float violation;            // 0 = feasible; INFINITY = not allowed at all
-    float value;
+    float violation;            // 0 (or below) = feasible; INFINITY = not allowed at all
+    float value;                // INFINITY = not allowed at all
 } aisle_pso_cost;
 
 // Cost of x[dim]. NaN in either part is counted and read as not allowed.
@@ -47,18 +49,18 @@ typedef enum aisle_pso_inertia { AISLE_PSO_FALLING, AISLE_PSO_CONSTRICTION } ais
 typedef struct aisle_pso_config {
     aisle_pso_cost_fn cost; // must not call back into the same aisle_pso
     void *cost_ctx;         // passed through, may be NULL
-    const float *lo, *hi;   // [dim] box, unit of x[i]; finite, lo[i] < hi[i]
-    const float *guess;     // [dim] where the first particle starts, clamped to the box; NULL = random
-    float spread;           // the other particles start within +- spread * (hi - lo) of the guess; 0 or no guess = whole box
+    const float *lo, *hi;   // [dim] box, unit of x[i]; -1e30 <= lo[i] < hi[i] <= 1e30
+    const float *guess;     // [dim] where the first particle starts, finite, clamped to the box; NULL = random
+    float spread; // the other particles start within +- spread * (hi - lo) of the guess; 0 or no guess = whole box
     aisle_pso_inertia inertia;
-    float w_start, w_end;   // FALLING only; 0 and 0 = 0.9 and 0.4
-    float c1, c2;           // FALLING only; 0 = 2
-    uint64_t seed;          // any value
-    uint32_t eval_max;      // calls of cost() in the whole run, >= particles
-    uint32_t stall_max;     // end when the best has not improved for so many evaluations; 0 = never
-    float value_goal;       // stop when feasible at or below it; -INFINITY = use up eval_max
-    uint16_t dim;           // [1, AISLE_PSO_DIM_MAX]
-    uint16_t particles;     // [2, AISLE_PSO_PARTICLES_MAX]
+    float w_start, w_end; // FALLING only; 0 and 0 = 0.9 and 0.4
+    float c1, c2;         // FALLING only; 0 = 2
+    uint64_t seed;        // any value
+    uint32_t eval_max;    // calls of cost() in the whole run, >= particles
+    uint32_t stall_max;   // end when the best has not improved for so many evaluations; 0 = never
+    float value_goal;     // stop when feasible at or below it; -INFINITY = use up eval_max
+    uint16_t dim;         // [1, AISLE_PSO_DIM_MAX]
+    uint16_t particles;   // [2, AISLE_PSO_PARTICLES_MAX]
 } aisle_pso_config;
 
 // Public so that it can be a static variable. Read the counters; write nothing.
@@ -79,6 +81,7 @@ aisle_status aisle_pso_start(aisle_pso *self, const aisle_pso_config *cfg, float
 
 // Spends at most `evals` calls of cost(). AISLE_BUSY: call again. AISLE_OK: goal met. AISLE_PARTIAL:
 // eval_max spent or stalled; best() is still the best seen. Further calls repeat the answer and cost nothing.
+// AISLE_ERR_ARG: never started (self all zero).
 aisle_status aisle_pso_step(aisle_pso *self, uint32_t evals);
 
 // Best point so far, [dim], inside the box; NULL while nothing allowed was seen. Valid until start().
