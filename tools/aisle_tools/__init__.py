@@ -1,0 +1,3 @@
+"""Console tools of the Aisle motion planner."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,148 @@
+"""aisle map: a map or scenario to layout_t and grid_chunk_t, onto the bus until it is acknowledged, or into a log."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from aisle import status_t
+
+from aisle_tools import layouts, rosmap
+from aisle_tools.bus import Bus, LogWriter, StatusWatch, now_us, time_revision
+from aisle_tools.errors import UserError
+from aisle_tools.names import HINTS, cause_name
+from aisle_tools.scenario import Scenario, read_scenario
+from aisle_tools.world import World
+
+RESEND = 1.0  # s without acknowledgement until everything is sent again
+REFUSALS = (
+    status_t.MAP_MISMATCH,
+    status_t.REVISION_GAP,
+    status_t.OUTDATED,
+    status_t.CONFLICT,
+    status_t.MALFORMED,
+    status_t.LIMIT,
+)
+
+
+def is_scenario(path: Path) -> bool:
+    return path.suffix.lower() == ".json"
+
+
+def read_any(path: Path, args: argparse.Namespace, margin: float = 0.0) -> tuple[World, Scenario | None]:
+    """A World from a map_server YAML or a scenario JSON; the Scenario too, if it is one."""
+    if is_scenario(path):
+        scenario = read_scenario(path, margin)
+        return scenario.world, scenario
+    if path.suffix.lower() in (".pgm", ".png", ".bmp", ".jpg"):
+        raise UserError(f"{path}: give the map's .yaml file, not its image")
+    return rosmap.read_world(path, args.strict_free, args.max_cells), None
+
+
+def add_read_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("reading maps")
+    group.add_argument(
+        "--strict-free",
+        action="store_true",
+        help=f"free only if p < min(free_thresh, {rosmap.STRICT_FREE}): grey 205 stays unknown, that is occupied",
+    )
+    group.add_argument("--max-cells", type=int, default=rosmap.CELLS_DEFAULT, metavar="N", help="aisled's limit 'cells'")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, nargs="+", metavar="FILE", help="map_server .yaml or scenario .json")
+    add_read_options(parser)
+    parser.add_argument("--margin", type=float, default=0.0, metavar="M", help="scenario: grow the bounds by radius + M")
+    parser.add_argument("--resolution", type=float, default=0.0, metavar="M", help="scenario: planner's grid, 0 = default")
+    parser.add_argument("--map-id", type=int, default=1, metavar="N")
+    parser.add_argument("--map-revision", type=int, metavar="N", help="default: rises with time")
+    parser.add_argument("--tile", type=int, default=layouts.TILE_SIDE, metavar="N", help="cells a side of a grid tile")
+
+
+def run(args: argparse.Namespace) -> int:
+    if args.tile < 8:
+        raise UserError(f"--tile must be at least 8 cells, not {args.tile}")
+    if args.resolution < 0.0:
+        raise UserError(f"--resolution must not be negative: {args.resolution:g}")
+    for i, path in enumerate(args.file):
+        world, scenario = read_any(path, args, args.margin)
+        if scenario is not None:
+            world.resolution = args.resolution
+        if args.log is not None:
+            write_log(world, args, args.map_id + i)
+        else:
+            send(world, args, args.map_id + i)
+    return 0
+
+
+def describe(world: World) -> str:
+    x0, y0, x1, y1 = world.bounds
+    text = f"{world.name}: {x1 - x0:.1f} x {y1 - y0:.1f} m"
+    if world.grid is not None:
+        free = 100.0 * (1.0 - world.grid.occupied.mean())
+        text += f", {world.grid.width} x {world.grid.height} cells of {world.grid.resolution:g} m, {free:.0f} % free"
+    if world.polygons:
+        text += f", {len(world.polygons)} polygons"
+    return text
+
+
+def write_log(world: World, args: argparse.Namespace, map_id: int) -> None:
+    log = LogWriter(args.log, args.prefix)
+    revision = args.map_revision if args.map_revision is not None else time_revision()
+    messages = layouts.make_messages(world, map_id, revision, now_us(), args.tile)
+    for name, msg in messages:
+        log.publish(name, msg)
+    log.close()
+    print(f"{describe(world)}: map {map_id} revision {revision}, {len(messages)} messages into {args.log}")
+
+
+def send(world: World, args: argparse.Namespace, map_id: int) -> None:
+    bus = Bus(args.lcm_url, args.prefix)
+    status = StatusWatch(bus)
+    before = status.wait(args.timeout)
+    revision = args.map_revision
+    if revision is None:
+        revision = time_revision()
+        if before.map_id == map_id:
+            revision = max(revision, before.map_revision + 1)
+    messages = layouts.make_messages(world, map_id, revision, now_us(), args.tile)
+    _send_until_held(bus, status, messages, map_id, revision, args.timeout)
+    print(f"{describe(world)}: map {map_id} revision {revision} in force, {len(messages)} messages")
+
+
+def _send_until_held(bus: Bus, status: StatusWatch, messages: list, map_id: int, revision: int, timeout: float) -> None:
+    def held() -> bool:
+        s = status.last
+        return s is not None and s.map_id == map_id and s.map_revision == revision
+
+    def refused() -> bool:
+        s = status.last
+        return s is not None and s.boot_id == before.boot_id and s.num_rejected > before.num_rejected
+
+    status.drain()
+    before = status.wait(timeout)
+    for attempt in range(max(1, int(timeout / RESEND))):
+        if attempt > 0:
+            print("aisle: not acknowledged yet, sending again", file=sys.stderr)
+        for name, msg in messages:
+            bus.publish(name, msg)
+        bus.spin(RESEND if attempt == 0 else 2.0 * RESEND, lambda: held() or refused())
+        if held():
+            return
+        if refused() and status.last is not None and status.last.cause in REFUSALS:
+            raise UserError(refusal_text("map", status.last))
+    last = status.wait(timeout)
+    raise UserError(
+        f"map {map_id} revision {revision} was not taken within {timeout:g} s: the daemon holds map {last.map_id} "
+        f"revision {last.map_revision}, cause {cause_name(last.cause)}"
+    )
+
+
+def refusal_text(what: str, status: status_t) -> str:
+    text = f"{what} refused by the daemon: {cause_name(status.cause)}"
+    if status.cause_id != 0:
+        text += f", {'limit' if status.cause == status_t.LIMIT else 'id'} {status.cause_id}"
+    if status.cause in HINTS:
+        text += f" ({HINTS[status.cause]})"
+    return text

@@ -1,0 +1,103 @@
+"""Numbers on the wire to words and back, read from the constants of the message types."""
+
+from __future__ import annotations
+
+from aisle import path_t, status_t
+
+from aisle_tools.errors import UserError
+
+PLANNERS = ["AUTO", "PSO", "PSO_LOCAL", "GA", "RRT", "RRT_ADAPTIVE", "RRT_STAR", "RRT_STAR_ADAPTIVE", "PRM", "ASTAR"]
+OBJECTIVES = ["SAFEST", "SHORTEST", "FASTEST", "LEAST_ENERGY", "PAPER"]
+INTERPOLATIONS = ["SPLINE", "LINEAR"]
+STATES = ["STARTING", "WAITING", "IDLE", "PLANNING", "ACTIVE", "BLOCKED", "HELD", "FAULT"]
+RESULTS = ["OK", "PARTIAL", "STOP", "NONE"]
+DRIVES = ["DIFFERENTIAL", "TRICYCLE", "OMNI"]
+KINDS = ["OBSTACLE", "KEEPOUT", "SPEED_LIMIT", "PENALTY", "DIRECTED"]
+
+CAUSES = {getattr(status_t, name): name for name in dir(status_t) if name.isupper() and getattr(status_t, name) >= 100}
+
+HINTS = {
+    status_t.NO_LAYOUT: "send one with 'aisle map'",
+    status_t.NO_VEHICLE: "send one with 'aisle vehicle' or put it into aisled's settings",
+    status_t.NO_POSE: "publish one with 'aisle goal --pose X,Y,TH'",
+    status_t.MAP_MISMATCH: "the map_id of the request is not the map held; see --map-id",
+    status_t.OUTDATED: "an equal or newer revision is held; see --map-revision",
+    status_t.CONFLICT: "this revision is held with other content; send a higher one",
+    status_t.LIMIT: "over a limit of aisled; raise it in its settings",
+    status_t.BUDGET: "work budget spent, not a proof; raise --work-units",
+}
+
+
+def cause_name(cause: int) -> str:
+    return "-" if cause == 0 else CAUSES.get(cause, f"cause {cause}")
+
+
+def state_name(state: int) -> str:
+    return STATES[state] if 0 <= state < len(STATES) else str(state)
+
+
+def result_name(status: int) -> str:
+    return RESULTS[status] if 0 <= status < len(RESULTS) else str(status)
+
+
+def option_value(name: str, allowed: list[str]) -> int:
+    """SHORTEST, shortest or 1 to 1; the constants of options_t and vehicle_t count from 0 in this order."""
+    word = name.strip().upper().replace("-", "_")
+    if word in allowed:
+        return allowed.index(word)
+    if word.isdigit() and int(word) < len(allowed):
+        return int(word)
+    raise UserError(f"'{name}' is none of: {', '.join(a.lower() for a in allowed)}")
+
+
+def reason(path: path_t) -> str:
+    """Why there is no path, in words."""
+    text = cause_name(path.cause)
+    if path.cause == status_t.TOO_NARROW:
+        text += f", the gap is {path.cause_value:.3f} m"
+    if path.cause_id != 0:
+        text += f", {what(path.cause, path.cause_id)}"
+    if path.cause in HINTS:
+        text += f" ({HINTS[path.cause]})"
+    return text
+
+
+def what(cause: int, ident: int) -> str:
+    """The thing cause_id means."""
+    if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED, status_t.TOO_NARROW, status_t.NO_PATH):
+        if ident == -1:
+            return "by the scanned map"
+        if ident == -2:
+            return "by the bounds"
+        return f"by polygon {ident}"
+    if cause == status_t.GOAL_OUTSIDE:
+        return f"goal {ident}"
+    if cause == status_t.LIMIT:
+        return f"limit {ident}"
+    return f"id {ident}"
+
+
+# Counters of diag_t: aisle_counter of planner.h by number.
+COUNTERS: dict[int, str] = dict(
+    enumerate(
+        [
+            "inputs",
+            "rejected",
+            "duplicates",
+            "layouts",
+            "queries",
+            "goal lists",
+            "paths",
+            "no paths",
+            "verify failed",
+            "nodes",
+            "swarm evaluations",
+            "verify intervals",
+            "work units",
+            "open nodes max",
+            "narrow-phase tests",
+            "support calls max",
+        ]
+    )
+)
+TIMERS: dict[int, str] = {}
