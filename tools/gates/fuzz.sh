@@ -1,27 +1,16 @@
 #!/usr/bin/env bash
-# Runs every libFuzzer program of tests/fuzz with AddressSanitizer for a share of the seconds given.
-#   tools/gates/fuzz.sh [seconds]
-# Seeds come from tests/fuzz/corpus/<program>, if there; what is found is kept in build/fuzz/found.
+# libFuzzer with AddressSanitizer and UndefinedBehaviorSanitizer on the message decoders, from seeds of every type.
+#   tools/gates/fuzz.sh [seconds]      default 60; a find is kept in build/fuzz/found, its stack is printed
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 seconds=${1:-60}
+programs=build/fuzz/tests/fuzz
 cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz --parallel "$(nproc)"
-mapfile -t programs < <(find build/fuzz/tests/fuzz -maxdepth 1 -type f -name 'fuzz_*' -perm -u+x | sort)
-[ ${#programs[@]} -gt 0 ] || { echo "fuzz: no programs built" >&2 && exit 1; }
-share=$((seconds / ${#programs[@]}))
-[ "$share" -gt 0 ] || share=1
-mkdir -p build/fuzz/found
-for program in "${programs[@]}"; do
-    name=$(basename "$program")
-    mkdir -p "build/fuzz/corpus/$name"
-    seeds=()
-    [ ! -d "tests/fuzz/corpus/$name" ] || seeds=("tests/fuzz/corpus/$name")
-    printf 'fuzz: %s for %s s\n' "$name" "$share"
-    "$program" -max_total_time="$share" -timeout=10 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1 \
-        -artifact_prefix="build/fuzz/found/$name-" "build/fuzz/corpus/$name" "${seeds[@]}" 2>"build/fuzz/$name.txt" || {
-        tail -n 60 "build/fuzz/$name.txt" && exit 1
-    }
-    grep -E 'stat::number_of_executed_units|stat::peak_rss_mb|cov: ' "build/fuzz/$name.txt" | tail -n 3
-done
+cmake --build --preset fuzz --parallel "$(nproc)" --target fuzz_decode fuzz_seeds
+mkdir -p build/fuzz/corpus build/fuzz/found
+"$programs/fuzz_seeds" build/fuzz/corpus
+"$programs/fuzz_decode" -max_total_time="$seconds" -max_len=65001 -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 \
+    -artifact_prefix=build/fuzz/found/ build/fuzz/corpus >build/fuzz/log.txt 2>&1 || { tail -n 60 build/fuzz/log.txt && exit 1; }
+grep -E 'cov: ' build/fuzz/log.txt | tail -n 1
+grep -E 'stat::number_of_executed_units|stat::peak_rss_mb' build/fuzz/log.txt

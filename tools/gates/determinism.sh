@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# The same log gives the same bytes: gcc and clang, -O0 and -O3, and fused multiply-add where this CPU has it.
+# Builds aisle-replay five ways in build/det-*, replays logs made by the aisle command, compares sha256 of the outputs;
+# each variant replays twice. On the way: gcc's -O0 call graph shows recursion that an optimiser might have unrolled.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+aisle=build/venv/bin/aisle
+work=build/det
+variants=("gcc-O0 gcc -O0" "gcc-O3 gcc -O3" "clang-O0 clang -O0" "clang-O3 clang -O3")
+if grep -qw fma /proc/cpuinfo && grep -qw avx2 /proc/cpuinfo; then
+    variants+=("gcc-O3-fma gcc -O3 -march=x86-64-v3")
+fi
+
+build_variant() { # name compiler flags...
+    local name=$1 compiler=$2 && shift 2
+    cmake -G Ninja -S . -B "build/det-$name" -DCMAKE_BUILD_TYPE=None -DCMAKE_C_COMPILER="$compiler" -DCMAKE_C_FLAGS="$*" \
+        -DAISLE_BUILD_TESTS=OFF -DAISLE_BUILD_JAVA=OFF >/dev/null
+    cmake --build "build/det-$name" --parallel "$(nproc)" --target aisle-replay >"$work/build-$name.txt" 2>&1 || {
+        cat "$work/build-$name.txt" && return 1
+    }
+}
+
+make_logs() { # a scanned map with its goals, and rooms of polygons with a disc and with a polygon footprint
+    rm -f "$work"/*.log
+    {
+        "$aisle" map --log "$work/depot.log" tests/data/ros_maps/nav2_depot.yaml
+        "$aisle" vehicle --log "$work/depot.log" --footprint 0.6x0.4 --margin 0.05
+        "$aisle" query --log "$work/depot.log" --goals tests/data/ros_maps/nav2_depot.goals.csv
+        "$aisle" query --log "$work/depot.log" --goals tests/data/ros_maps/nav2_depot.goals.csv --objective shortest \
+            --interpolation linear
+        for name in field_12_disc field_8 barrier_2; do
+            "$aisle" map --log "$work/$name.log" "tests/data/scenarios/$name.json"
+            "$aisle" vehicle --log "$work/$name.log" --scenario "tests/data/scenarios/$name.json"
+            "$aisle" query --log "$work/$name.log" --scenario "tests/data/scenarios/$name.json"
+            "$aisle" query --log "$work/$name.log" --scenario "tests/data/scenarios/$name.json" --objective shortest \
+                --planner pso --seed 7
+        done
+    } >"$work/logs.txt"
+}
+
+replay() { # variant run: checksums of the outputs of all logs on stdout
+    local variant=$1 run=$2 program log out
+    program=$(find "build/det-$variant" -type f -name aisle-replay -perm -u+x)
+    for log in "$work"/*.log; do
+        out=$work/$(basename "$log" .log).$variant.$run
+        "$program" --out "$out" "$log" >"$out.txt"
+        [ -s "$out" ] || { echo "determinism: $variant wrote nothing for $log" >&2 && return 1; }
+        printf '%s %s\n' "$(basename "$log")" "$(sha256sum <"$out")"
+    done
+}
+
+rm -rf "$work"
+mkdir -p "$work"
+make_logs
+failed=0
+for variant in "${variants[@]}"; do
+    read -r name compiler flags <<<"$variant"
+    # shellcheck disable=SC2086 # several flags
+    build_variant "$name" "$compiler" $flags
+    for run in 1 2; do replay "$name" "$run" >"$work/sums.$name.$run"; done
+    for run in 1 2; do
+        if cmp -s "$work/sums.gcc-O0.1" "$work/sums.$name.$run"; then
+            printf 'determinism: %-12s run %s: same bytes\n' "$name" "$run"
+        else
+            printf 'determinism: %-12s run %s: OTHER BYTES\n' "$name" "$run"
+            diff "$work/sums.gcc-O0.1" "$work/sums.$name.$run" || true
+            failed=1
+        fi
+    done
+done
+cat "$work/sums.gcc-O0.1"
+build/venv/bin/python tools/gates/stack.py build/det-gcc-O0/CMakeFiles/aisle_*.dir | grep -E '^stack:' || failed=1
+exit "$failed"
