@@ -171,9 +171,14 @@ class Stack(unittest.TestCase):
 
     def test_a_listed_pointer_counts_with_the_deepest_of_its_list(self):
         text = self.ci([("a", 8, "static"), ("x.c:cb", 30, "static")], [("a", "__indirect_call")])
-        _, depth, _, problems = stack.analyse([text], stack.read_inlets("a: cb # why\n"))
+        _, depth, _, problems = stack.analyse([text], stack.read_inlets("x.c: cb # why\n"))
         self.assertEqual((depth["a"], problems), (38, []))
-        self.assertEqual(len(stack.analyse([text], {"a": ["gone"]})[3]), 1)
+        self.assertEqual(len(stack.analyse([text], {"x.c": ["gone"]})[3]), 1)
+
+    def test_what_an_external_function_calls_back_lies_on_top_of_it(self):
+        text = self.ci([("a", 8, "static"), ("x.c:support", 30, "static")], [("a", "ccdMPRIntersect")])
+        _, depth, _, problems = stack.analyse([text], {"ccdMPRIntersect": ["support"]})
+        self.assertEqual((depth["a"], problems), (38 + stack.EXTERNAL["ccdMPRIntersect"], []))
 
 
 class Words(unittest.TestCase):

@@ -4,8 +4,9 @@
     stack.py DIR... [--limit BYTES]     DIR: holds *.ci files of `gcc -fcallgraph-info=su,da`
     stack.py DIR... --header FILE       writes the bound as a macro, or none if it is not proved; exit 0
 
-Calls through pointers are bounded by what inlets.txt beside this file lists for the caller; a caller that is missing
-there fails the gate. Functions outside the archive count with the bytes of EXTERNAL, measured or stated there.
+Calls through pointers are bounded by what inlets.txt beside this file lists for the calling file; a file that is
+missing there fails the gate. Functions outside the archive count with the bytes of EXTERNAL, measured or stated there,
+and with what inlets.txt says they call back.
 Prints the worst frames and the bound of every public function; exit 1 on recursion, unbounded frames, unknown
 callees or a bound above the limit.
 """
@@ -36,6 +37,7 @@ class Graph:
     def __init__(self):
         self.frame = {}  # title -> bytes
         self.calls = {}  # title -> set of titles
+        self.file = {}  # title -> source file
         self.unbounded = []
 
     def read(self, text):
@@ -44,6 +46,7 @@ class Graph:
             if frame is None:
                 continue
             self.frame[title] = int(frame.group(1))
+            self.file[title] = label.split("\\n")[1].split(":")[0]
             if frame.group(2) == "dynamic":
                 self.unbounded.append(title)
         for source, target in EDGE.findall(text):
@@ -60,7 +63,7 @@ def plain(title):
 
 
 def read_inlets(text):
-    """{caller: [callee...]} from lines "caller: callee callee"; # starts a comment."""
+    """{file or external function: [callee...]} from lines "caller: callee callee"; # starts a comment."""
     inlets = {}
     for line in text.splitlines():
         line = line.split("#")[0].strip()
@@ -70,20 +73,35 @@ def read_inlets(text):
     return inlets
 
 
+def listed(inlets, path):
+    """What inlets.txt says of a source file, None if nothing."""
+    return next((names for key, names in inlets.items() if path == key or path.endswith("/" + key)), None)
+
+
+def add_callbacks(graph, inlets):
+    """External functions that call back become part of the graph."""
+    for name in set(EXTERNAL) & set(inlets):
+        graph.frame[name] = EXTERNAL[name]
+        graph.file[name] = name
+        graph.calls[name] = {INDIRECT}
+
+
 def resolve(graph, inlets):
     """Calls with pointers replaced by the functions they may reach; also the problems met on the way."""
     calls, problems = {}, []
+    add_callbacks(graph, inlets)
     for title in graph.frame:
         targets = set(graph.calls.get(title, ()))
         if INDIRECT in targets:
             targets.discard(INDIRECT)
-            if plain(title) not in inlets:
+            names = listed(inlets, graph.file[title])
+            if names is None:
                 problems.append(f"{title} calls through a pointer and inlets.txt does not say whom")
-            for name in inlets.get(plain(title), ()):
+            for name in names or ():
                 found = graph.titles(name)
                 targets.update(found)
-                if not found and name not in EXTERNAL:
-                    problems.append(f"inlets.txt: {plain(title)} may call {name}, which is not there")
+                if not found:
+                    problems.append(f"inlets.txt: {graph.file[title]} may call {name}, which is not there")
         for target in targets:
             if target not in graph.frame and plain(target) not in EXTERNAL:
                 problems.append(f"{title} calls {target}, whose stack is not known")
