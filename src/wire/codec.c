@@ -271,7 +271,7 @@ static bool check_body(aisle_msg_type type, const uint8_t *bytes, size_t size, a
 
 static bool check_message(aisle_msg_type type, const uint8_t *bytes, size_t size, aisle_msg_fault *fault) {
     if (size > AISLE_MSG_DATAGRAM_MAX) {
-        return blame(fault, AISLE_MSG_FAULT_OVERSIZE, "", size < INT64_MAX ? (int64_t)size : INT64_MAX);
+        return blame(fault, AISLE_MSG_FAULT_OVERSIZE, "", size < INT32_MAX ? (int64_t)size : INT32_MAX);
     }
     if (size < AISLE_MSG_FINGERPRINT_SIZE) {
         return blame(fault, AISLE_MSG_FAULT_TRUNCATED, "", 0);

@@ -8,7 +8,7 @@
 // 1, right fingerprint, no byte missing or left over, at most AISLE_MSG_DATAGRAM_MAX bytes. A message that decodes
 // encodes to the very same bytes. Ranges of the other fields (ids, kinds, shapes) are for those who use them.
 //
-// Memory: none but the caller's; below 400 bytes of stack; no allocation, no recursion. Any alignment of bytes.
+// Memory: none but the caller's; below 1 KiB of stack; no allocation, no recursion. Any alignment of bytes.
 // Time: O(bytes), independent of what they say; decode reads them twice. Threads: no state, all functions re-entrant.
 // Needs IEEE 754 floats with the byte order of integers; any byte order.
 #ifndef AISLE_WIRE_CODEC_H
@@ -34,7 +34,7 @@ typedef enum aisle_msg_fault_kind {
     AISLE_MSG_FAULT_TRAILING,       // value: bytes left over
     AISLE_MSG_FAULT_NEGATIVE_COUNT, // field, value: the count
     AISLE_MSG_FAULT_OVER_BOUND,     // field, value: the count
-    AISLE_MSG_FAULT_OVERSIZE,       // value: bytes, more than AISLE_MSG_DATAGRAM_MAX
+    AISLE_MSG_FAULT_OVERSIZE,       // value: bytes, above AISLE_MSG_DATAGRAM_MAX; INT32_MAX: or more
     AISLE_MSG_FAULT_NOT_FINITE,     // field: NaN or infinite
     AISLE_MSG_FAULT_BAD_BOOLEAN     // field, value: neither 0 nor 1
 } aisle_msg_fault_kind;
@@ -71,9 +71,8 @@ bool aisle_msg_field_offset(aisle_msg_type type, const char *name, size_t *offse
 // Overwrites an encoded int64_t, e.g. a utime found by aisle_msg_field_offset().
 void aisle_msg_put_int64(void *at, int64_t value);
 
-// Of a type; 0 or "?" for none. name: as in its .lcm file ("path_t"). max_size: a buffer of that many bytes never is
-// too small for what encode or decode accepts. struct_size: sizeof of the C struct. fingerprint: as lcm-gen computes
-// it.
+// Of a type; 0 or "?" for none. name: as in its .lcm file ("path_t"). max_size: a buffer of so many bytes never is
+// too small for what encode or decode accepts. struct_size: sizeof of the C struct. fingerprint: as lcm-gen has it.
 const char *aisle_msg_name(aisle_msg_type type);
 size_t aisle_msg_max_size(aisle_msg_type type);
 size_t aisle_msg_struct_size(aisle_msg_type type);
