@@ -2,23 +2,43 @@
 //
 // Works on the bytes of a path_t, in double, from the primitive curve its waypoints define, and shares no code with the
 // search: its own geometry of pieces, obstacles straight from the layout's polygons, scan bits and bounds (not the
-// distance field), narrow phase by libccd (world/collide.h).
+// distance field), narrow phase by libccd (world/collide.h). Files: verify_piece.c (curve), verify_limits.c (what the
+// vehicle can do), verify_motion.c (collision proof), verify.c (order of it all), release.c (the way out).
 //
-// Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal), else a straight line
-// if curvature of i is 0, else the minor arc. theta changes linearly, the short way. For an interval of a piece with origin travel L,
-// curvature k, turn b: every body point at distance r from the origin stays within
+// Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal within 1e-9 m,
+// curvature 0), else a straight line if curvature k of i is 0, else the minor arc; |k| * chord / 2 <= 1 + 1e-6, above 1
+// read as the half circle. Equal places without TURN_IN_PLACE are no piece. theta changes linearly, the short way; within
+// 1e-6 of half a turn both ways are proved, since rounding decides which one a receiver takes.
+// For an interval of a piece with origin travel L, curvature k, turn b, every body point at distance r from the origin
+// stays within
 //     d = |k| L^2 / 8 + r b^2 / 8
-// of the straight way between its end positions (sagittas of the origin's arc and of the rotation), so the hull of the
-// footprint at both end poses, grown by margin + d + AISLE_VERIFY_EPSILON, covers the whole interval. If that hull is free the
-// interval is proved; else it is halved; at an interval below 1 mm of travel of every body point it is a collision.
-// Straight pieces without turn have d = 0: one exact test (cut to at most 1 m so that the boxes stay small).
-// Where the piece is driven faster than creep_speed (either end), the same is proved with creep_clearance instead of the margin.
+// of the straight way between its end positions (|f - chord| <= max|f''| / 8 for the origin's arc and the rotation), so
+// the hull of the footprint at both end poses, grown by margin + d + AISLE_VERIFY_EPSILON, covers the whole interval. If that
+// hull is free the interval is proved; else it is halved; below 1 mm of travel of every body point it is a collision.
+// Straight pieces without turn have d = 0: one exact test. Intervals above 1 m are halved unseen so that boxes stay small.
+// So a path is refused only if the footprint comes closer than margin + 2e-6 m, or, where it turns, margin + 0.6 mm: a hull
+// over 1 mm of travel reaches at most 0.5 mm beyond the nearer of its ends.
+// Free means: clear of every OBSTACLE and KEEPOUT polygon and occupied scan cell, and inside the bounds and the scan.
+// Where a piece may be driven faster than creep_speed, creep_clearance * (1 - 1e-3) is proved instead of the margin, if
+// more. The moving speed of a piece is the larger of its ends'; if both ends are at rest, the peak of the trapezoid with
+// a_max and d_max that fills the time between them (a reached goal's dwell taken off).
 //
-// Also: status OK or PARTIAL; n >= 1; finite, in bounds; first waypoint at the stated start pose, goals reached in order within
-// tolerance (the caller gives them); s and t consistent, t strictly rising; speeds, accelerations, lateral
-// acceleration, turn rates, curvature within the vehicle's limits (relative tolerance 1e-3 + float rounding); rest at first and last
-// waypoint, STOP and turns; a turn on the spot only if curvature_max is 0; heading along the motion (2e-3 rad; backwards with REVERSE) unless OMNI;
-// length and duration equal the waypoints' sums; length_bound <= length; clearance_min not above any piece's; certificate right.
+// Also checked, with relative tolerance 1e-3 + float rounding where not said otherwise:
+// - status OK, PARTIAL or STOP (read as PARTIAL), 1..1024 waypoints, numbers finite, places within 1e5 m, theta in [-pi, pi],
+//   base within the path, energy >= 0, risk in [0, 1], clearances >= 0;
+// - first waypoint within 1e-6 of the start; GOAL waypoints are the caller's goals in order, within their tolerance; OK: all of
+//   them, the last one at the last waypoint. A goal with dwell is a stop;
+// - s and t start at 0; s is the sum of lengths (1e-4 m + 3e-5 s); t strictly rising and fits length and speeds: 2 L / (v0 + v1) each
+//   piece (at most 1.1 ms longer: times are 1 ms apart), both ends at rest: no shorter than the trapezoid;
+// - speeds in [0, v_max or v_reverse_max], |v1^2 - v0^2| <= 2 L a_max or d_max, `a` of the piece that ends there within them,
+//   v^2 |k| <= lateral_a_max, v |turn| / L <= omega_max, turns on the spot no faster than omega_max and alpha_max let them;
+// - |k| <= curvature_max if that is not 0; a turn on the spot (but for a mere wait) only if it is 0;
+// - heading within 2e-3 rad of the direction of motion at both ends of a piece (backwards with REVERSE) and turning as the
+//   curve does, unless OMNI; OMNI: direction of motion steady within 4e-3 rad where it moves;
+// - rest (below 1e-6 m/s) at first and last waypoint, STOP, both ends of turns, and where REVERSE changes;
+// - length, duration equal the waypoints' sums; 0 <= length_bound <= length; clearance_min not above any piece's;
+// - map and vehicle revisions are those proved against; certificate right.
+// Not proved: the waypoints' clearances, energy, risk and length_bound themselves; speed-limit and directed zones.
 // Memory: the caller's struct, stack of intervals of fixed depth. Time: O(intervals * obstacles near), sliced.
 #ifndef AISLE_PLAN_VERIFY_H
 #define AISLE_PLAN_VERIFY_H
@@ -30,7 +50,7 @@
 #include "world/layout.h"
 
 #define AISLE_VERIFY_EPSILON 1e-6 // m, for rounding
-#define AISLE_VERIFY_DEPTH 64     // of the interval stack
+#define AISLE_VERIFY_DEPTH 64     // of the interval stack; 29 halvings reach 1 mm from the longest arc
 
 typedef struct aisle_verify_request {
     const aisle_layout *layout;
@@ -62,27 +82,70 @@ typedef struct aisle_stamp {
     uint32_t size; // of them; 0: nothing proved
 } aisle_stamp;
 
+typedef struct aisle_verify_piece { // from waypoint i-1 to i; verify_piece.c
+    aisle_vec2 from, unit;   // first end; direction of the chord
+    double chord;            // m, >= 0
+    double phi;              // half the angle the course turns by, rad, [0, pi/2]; 0: straight
+    double side;             // 1: to the left, -1: to the right
+    double length;           // m
+    double course;           // direction of the chord, rad; 0 without one
+    double theta, turn;      // heading at the first end and its change, rad
+    double turn_other;       // the other way round if rounding decides between them; else = turn
+    double time;             // s, dwell taken off
+    double peak;             // m/s, fastest on it
+    bool on_spot, reverse;
+} aisle_verify_piece;
+
+typedef struct aisle_verify_motion { // intervals of the piece in hand; verify_motion.c
+    double lo;                     // where the interval in front begins, [0, 1] of the piece
+    double hi[AISLE_VERIFY_DEPTH]; // where those not yet proved end, the next on top
+    uint32_t depth;                // entries in hi
+    double turn;                   // way round in hand
+    double margin, growth;         // m: always kept; to be proved on this piece (>= margin)
+} aisle_verify_motion;
+
+typedef enum aisle_verify_phase {
+    AISLE_VERIFY_PHASE_HEADER,    // decode, check what is not a waypoint
+    AISLE_VERIFY_PHASE_WAYPOINTS, // limits, goals
+    AISLE_VERIFY_PHASE_MOTION,    // collisions
+    AISLE_VERIFY_PHASE_DONE
+} aisle_verify_phase;
+
 typedef struct aisle_verify {
     aisle_verify_request request;
-    aisle_path_msg *path;    // decoded copy; the caller's
+    aisle_path_msg *path; // decoded copy; the caller's
     aisle_verify_fault fault;
-    uint32_t fault_waypoint; // index the fault is at
+    uint32_t fault_waypoint; // index the fault is at: the later end of a piece
     int32_t fault_id;        // COLLISION, CREEP: the obstacle's id or AISLE_LAYOUT_ID_*
-    aisle_vec2 fault_at;     // and the origin's position there
+    aisle_vec2 fault_at;     // and the origin's position there, within 1 mm
     uint32_t intervals;      // looked at
     aisle_collide_count collide;
-    // (the rest: the implementer's)
+
+    // The verifier's own.
+    aisle_verify_phase phase;
+    uint32_t at;    // waypoint or piece in hand
+    uint32_t goals; // reached before it
+    uint32_t crc;   // of the bytes at the start
+    int32_t map_id, map_revision;
+    double lever; // m, farthest footprint point from the origin
+    double s;     // m, sum of lengths so far
+    double along; // rad, direction of motion at the end of the last piece
+    aisle_verify_piece piece;
+    aisle_verify_motion motion;
 } aisle_verify;
 
-// Begins. `decoded` (one aisle_path_msg of scratch) stays in use until the end.
+// Begins. `decoded` (one aisle_path_msg of scratch), bytes, goals and vehicle stay in use until the end; a layout that
+// changes meanwhile is a CERTIFICATE fault, bytes that do are a DECODE fault. O(1).
 void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request, aisle_path_msg *decoded);
 
-// Looks at no more than `units` intervals (one unit each; fixed checks count 1 a waypoint). AISLE_BUSY; AISLE_OK: proved, *stamp
-// written; AISLE_ERR_DATA: fault says why, *stamp zeroed. *spent is added to.
+// Looks at no more than `units` intervals (one unit each; fixed checks count 1 a waypoint and 1 for the rest). AISLE_BUSY;
+// AISLE_OK: proved, *stamp written; AISLE_ERR_DATA: fault says why, *stamp zeroed (as with AISLE_BUSY). *spent is added to.
+// Further calls repeat the answer and cost nothing. However cut into steps, answer and counts are the same.
 aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spent, aisle_stamp *stamp);
 
 // The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of status NONE with no
-// waypoints (nothing to drive). utime and valid_until_utime may have changed since the proof (lease). AISLE_ERR_ARG otherwise, *event untouched.
+// waypoints (nothing to drive). utime and valid_until_utime may have changed since the proof (lease). AISLE_ERR_ARG otherwise,
+// *event untouched. stamp may be NULL (nothing proved). O(size).
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp, aisle_event *event);
 
 // crc32 over the waypoints as encoded (in order), then over path_revision, query_id, goal_list_id, goal_list_revision, map_id, map_revision,

@@ -1,0 +1,259 @@
+#include "plan/compose.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+#include "robot/profile.h"
+
+#include <math.h>
+
+#define CORNER_RADIUS 1.0      // m, wished where it is free
+#define CORNER_RADIUS_MIN 0.05 // m
+#define SPLINE_SPACING 0.4     // m, between samples
+
+void aisle_compose_carve(aisle_compose *self, aisle_arena *arena) {
+    self->raw = (aisle_waypoint_msg *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_waypoint_msg));
+    self->dwell = (float *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    self->spline = (aisle_spline *)aisle_arena_take(arena, 1U, sizeof(aisle_spline));
+    self->sample = (aisle_spline_sample *)aisle_arena_take(arena, AISLE_SWARM_SAMPLES_MAX, sizeof(aisle_spline_sample));
+}
+
+bool aisle_goal_heading_is_free(const aisle_goal_msg *goal) { return (double)goal->tolerance_theta >= 3.14159; }
+
+static bool arc_free(void *ctx, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    aisle_compose *self = (aisle_compose *)ctx;
+    const aisle_space *space = self->request.space;
+    return aisle_space_piece_clearance(space, from, to, &self->units) >= space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
+}
+
+static aisle_corner_rule corner_rule(aisle_compose *self) {
+    const aisle_vehicle *vehicle = self->request.space->vehicle;
+    double zone = (double)self->request.options->zone;
+    double sure = vehicle->outer_radius + vehicle->margin;
+    aisle_corner_rule rule = {.max_radius = aisle_max(sure, CORNER_RADIUS),
+                              .sure_radius = sure,
+                              .min_radius = CORNER_RADIUS_MIN,
+                              .zone = zone,
+                              .arc_free = arc_free,
+                              .ctx = self};
+    if (vehicle->curvature_max > 0.0) {
+        rule.min_radius = 1.0 / vehicle->curvature_max;
+        rule.max_radius = aisle_max(rule.max_radius, rule.min_radius);
+    }
+    if (zone < 0.0) {
+        rule.max_radius = 0.0;
+        rule.zone = 0.0;
+    }
+    return rule;
+}
+
+static void lay_spline(aisle_compose *self, aisle_curve *curve, const aisle_leg *leg) {
+    aisle_status st = aisle_spline_fit(self->spline, AISLE_SPLINE_CUBIC, leg->via, leg->via_count);
+    AISLE_ASSERT(st == AISLE_OK);
+    double wished = floor(aisle_spline_length(self->spline) / SPLINE_SPACING) + 2.0;
+    double share = (double)AISLE_COMPOSE_PIECES / (2.0 * (double)self->request.leg_count);
+    uint32_t count = (uint32_t)aisle_clamp(wished, 3.0, aisle_max(share, 16.0));
+    aisle_spline_resample(self->spline, count, self->sample);
+    aisle_vec2 d = self->sample[0].d1;
+    double theta = aisle_atan2(d.y, d.x);
+    aisle_curve_turn_to(curve, theta);
+    curve->w[curve->n - 1U].theta = theta;
+    for (uint32_t i = 1; i < count; i++) {
+        double norm = aisle_vec2_length(self->sample[i].d1);
+        if (norm > 1e-9) {
+            aisle_curve_biarc_to(curve, self->sample[i].p, aisle_vec2_scale(self->sample[i].d1, 1.0 / norm));
+        }
+    }
+}
+
+static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
+    const aisle_compose_request *request = &self->request;
+    const aisle_leg *leg = &request->legs[i];
+    const aisle_goal_msg *goal = &request->goals[i];
+    aisle_corner_rule rule = corner_rule(self);
+    if (leg->count < 2U) { // the goal is where the leg begins
+        // only the heading may be left to do
+    } else if (!leg->use_swarm) {
+        aisle_curve_polyline(curve, request->points + leg->first, leg->count, &rule);
+    } else if (request->options->interpolation == AISLE_OPTIONS_LINEAR) {
+        aisle_curve_polyline(curve, leg->via, leg->via_count, &rule);
+    } else {
+        lay_spline(self, curve, leg);
+    }
+    double tolerance = goal->tolerance_theta > 0.0F ? (double)goal->tolerance_theta : 0.05;
+    if (!aisle_goal_heading_is_free(goal) &&
+        fabs(aisle_angle_difference(curve->w[curve->n - 1U].theta, goal->theta)) > 0.5 * tolerance) {
+        aisle_curve_turn_to(curve, goal->theta);
+    }
+    aisle_curve_goal(curve, goal->id);
+}
+
+// Heading with which the first leg leaves.
+static double first_heading(aisle_compose *self) {
+    const aisle_leg *leg = &self->request.legs[0];
+    if (leg->count < 2U) {
+        return self->request.start->theta;
+    }
+    if (leg->use_swarm && self->request.options->interpolation != AISLE_OPTIONS_LINEAR) {
+        aisle_status st = aisle_spline_fit(self->spline, AISLE_SPLINE_CUBIC, leg->via, leg->via_count);
+        AISLE_ASSERT(st == AISLE_OK);
+        aisle_vec2 d = aisle_spline_at(self->spline, 0.0).d1;
+        return aisle_atan2(d.y, d.x);
+    }
+    const aisle_vec2 *p = leg->use_swarm ? leg->via : self->request.points + leg->first;
+    return aisle_atan2(p[1].y - p[0].y, p[1].x - p[0].x);
+}
+
+static bool is_turn(const aisle_waypoint_msg *from) { return (from->flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0; }
+
+// Cuts long pieces of raw into the path's waypoints. False: too many.
+static bool cut_pieces(aisle_compose *self, double longest) {
+    aisle_path_msg *path = self->path;
+    uint32_t n = 0;
+    path->waypoints[n++] = self->raw[0];
+    for (uint32_t i = 1; i < self->raw_count; i++) {
+        const aisle_waypoint_msg *from = &self->raw[i - 1U];
+        const aisle_waypoint_msg *to = &self->raw[i];
+        double parts = is_turn(from) ? 1.0 : floor(aisle_piece_length(from, to) / longest) + 1.0;
+        if ((double)n + parts > (double)AISLE_PATH_MAX_WAYPOINTS) {
+            return false;
+        }
+        for (uint32_t k = 1; k < (uint32_t)parts; k++) {
+            aisle_pose2 p = aisle_piece_at(from, to, (double)k / parts);
+            path->waypoints[n++] = (aisle_waypoint_msg){
+                .x = p.x, .y = p.y, .theta = aisle_angle_wrap(p.theta), .curvature = to->curvature};
+        }
+        path->waypoints[n++] = *to;
+    }
+    path->num_waypoints = (int16_t)n;
+    return true;
+}
+
+static double raw_length(const aisle_compose *self) {
+    double length = 0.0;
+    for (uint32_t i = 1; i < self->raw_count; i++) {
+        length += aisle_piece_length(&self->raw[i - 1U], &self->raw[i]);
+    }
+    return length;
+}
+
+aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path) {
+    self->request = *request;
+    self->path = path;
+    self->units = 0;
+    self->at = 1;
+    aisle_curve curve = {.w = self->raw, .capacity = AISLE_PATH_MAX_WAYPOINTS};
+    const aisle_goal_msg *start = request->start;
+    double theta = aisle_goal_heading_is_free(start) ? first_heading(self) : start->theta;
+    aisle_curve_begin(&curve, (aisle_pose2){start->x, start->y, theta});
+    for (uint32_t i = 0; i < request->leg_count; i++) {
+        lay_leg(self, &curve, i);
+    }
+    self->raw_count = curve.n;
+    if (curve.overflow) {
+        return AISLE_ERR_CAPACITY;
+    }
+    double longest = aisle_max(AISLE_COMPOSE_PIECE, raw_length(self) / (double)AISLE_COMPOSE_PIECES);
+    return cut_pieces(self, longest) ? AISLE_OK : AISLE_ERR_CAPACITY;
+}
+
+// May waypoint b between a and c go, its two pieces being one straight piece of one speed class?
+static bool may_join(const aisle_compose *self, const aisle_waypoint_msg *a, const aisle_waypoint_msg *b,
+                     const aisle_waypoint_msg *c) {
+    double creep = self->request.space->vehicle->creep_clearance;
+    bool straight = fabs((double)b->curvature) + fabs((double)c->curvature) <= 0.0 && fabs(b->theta - c->theta) < 1e-12 &&
+                    fabs(a->theta - b->theta) < 1e-9;
+    bool same_class = ((double)b->clearance < creep) == ((double)c->clearance < creep);
+    double longest = (double)b->clearance < creep ? 0.5 * AISLE_COMPOSE_JOIN : AISLE_COMPOSE_JOIN;
+    return straight && same_class && b->flags == 0 && !is_turn(a) && aisle_piece_length(a, c) <= longest;
+}
+
+static void join_pieces(aisle_compose *self) {
+    aisle_waypoint_msg *w = self->path->waypoints;
+    uint32_t n = (uint32_t)self->path->num_waypoints;
+    uint32_t kept = 1;
+    for (uint32_t i = 1; i < n; i++) {
+        if (kept > 1U && may_join(self, &w[kept - 2U], &w[kept - 1U], &w[i])) {
+            float clearance = w[kept - 1U].clearance < w[i].clearance ? w[kept - 1U].clearance : w[i].clearance;
+            w[kept - 1U] = w[i];
+            w[kept - 1U].clearance = clearance;
+        } else {
+            w[kept++] = w[i];
+        }
+    }
+    self->path->num_waypoints = (int16_t)kept;
+}
+
+static void set_dwell(aisle_compose *self) {
+    uint32_t goal = 0;
+    for (uint32_t i = 0; i < (uint32_t)self->path->num_waypoints; i++) {
+        bool reached = (self->path->waypoints[i].flags & AISLE_WAYPOINT_GOAL) != 0 && goal < self->request.leg_count;
+        self->dwell[i] = reached ? self->request.goals[goal].dwell : 0.0F;
+        goal += reached ? 1U : 0U;
+    }
+}
+
+// Writes each leg's measured cost: what the comparison of seed and swarm goes by.
+static void value_legs(aisle_compose *self) {
+    const aisle_path_msg *path = self->path;
+    uint32_t leg = 0;
+    double value = 0.0;
+    for (uint32_t i = 0; i < (uint32_t)path->num_waypoints; i++) {
+        const aisle_waypoint_msg *to = &path->waypoints[i];
+        double length = i > 0U ? aisle_piece_length(to - 1, to) : 0.0;
+        value += length * aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
+        if ((to->flags & AISLE_WAYPOINT_GOAL) != 0 && leg < self->request.leg_count) {
+            aisle_leg *at = &self->request.legs[leg++];
+            *(at->use_swarm ? &at->swarm_value : &at->seed_value) = value;
+            value = 0.0;
+        }
+    }
+}
+
+static aisle_status finish(aisle_compose *self) {
+    aisle_path_msg *path = self->path;
+    const aisle_space *space = self->request.space;
+    value_legs(self);
+    join_pieces(self);
+    set_dwell(self);
+    aisle_profile_sum sum;
+    aisle_status st = aisle_profile_fill(space->vehicle, space->layout, path->waypoints, (uint32_t)path->num_waypoints,
+                                         self->dwell, &sum);
+    if (st != AISLE_OK) {
+        return st;
+    }
+    float least = (float)AISLE_CLEARANCE_CAP;
+    for (int16_t i = 0; i < path->num_waypoints; i++) {
+        least = path->waypoints[i].clearance < least ? path->waypoints[i].clearance : least;
+    }
+    path->clearance_min = least;
+    path->length = (float)sum.length;
+    path->duration = (float)sum.duration;
+    path->energy = (float)sum.energy;
+    path->risk = (float)sum.risk;
+    self->units += (uint32_t)(uint16_t)path->num_waypoints;
+    return AISLE_OK;
+}
+
+// Largest float not above x: a clearance is told rather too small.
+static float float_below(double x) {
+    float f = (float)(x * (1.0 - 1e-7));
+    return f > 0.0F ? f : 0.0F;
+}
+
+aisle_status aisle_compose_step(aisle_compose *self, uint32_t units, uint32_t *spent) {
+    aisle_status st = AISLE_BUSY;
+    aisle_waypoint_msg *w = self->path->waypoints;
+    const aisle_space *space = self->request.space;
+    while (self->at < (uint32_t)self->path->num_waypoints && self->units < units) {
+        double clearance = aisle_space_piece_clearance(space, &w[self->at - 1U], &w[self->at], &self->units);
+        w[self->at++].clearance = float_below(clearance);
+    }
+    if (self->at >= (uint32_t)self->path->num_waypoints) {
+        aisle_pose2 start = {w[0].x, w[0].y, w[0].theta};
+        w[0].clearance = float_below(aisle_space_gap(space, start, AISLE_CLEARANCE_CAP, NULL));
+        st = finish(self);
+    }
+    *spent += self->units;
+    self->units = 0;
+    return st;
+}

@@ -1,0 +1,52 @@
+// compose.h - from planned legs to a complete path_t: pieces, clearances, speeds, sums. Level 4.
+//
+// Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines with arcs);
+// a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are cut to AISLE_COMPOSE_PIECE (more
+// on long paths, so that the waypoints suffice) so that clearance, creep speed and zones follow the place; straight neighbours of the same
+// speed class are joined again. Clearance: space.h's lower bound. Speeds: profile.h.
+// Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
+#ifndef AISLE_PLAN_COMPOSE_H
+#define AISLE_PLAN_COMPOSE_H
+
+#include "plan/leg.h"
+#include "plan/objective.h"
+#include "plan/space.h"
+#include "robot/curve.h"
+
+#define AISLE_COMPOSE_PIECE 0.5      // m
+#define AISLE_COMPOSE_PIECES 400U    // a path is cut into about so many pieces at most
+#define AISLE_COMPOSE_JOIN 2.0       // m, longest joined piece
+
+typedef struct aisle_compose_request {
+    const aisle_space *space;
+    const aisle_objective *objective;
+    const aisle_options_msg *options;
+    const aisle_vec2 *points; // seed polylines of all legs
+    aisle_leg *legs;          // their seed_value or swarm_value is written
+    uint32_t leg_count;
+    const aisle_goal_msg *start; // heading free if tolerance_theta >= pi
+    const aisle_goal_msg *goals; // [leg_count]
+} aisle_compose_request;
+
+typedef struct aisle_compose {
+    aisle_compose_request request;
+    aisle_path_msg *path;    // its waypoints and sums are written
+    aisle_waypoint_msg *raw; // [AISLE_PATH_MAX_WAYPOINTS]
+    float *dwell;            // [AISLE_PATH_MAX_WAYPOINTS]
+    aisle_spline *spline;
+    aisle_spline_sample *sample; // [AISLE_SWARM_SAMPLES_MAX]
+    uint32_t raw_count, at;
+    uint32_t units;
+} aisle_compose;
+
+void aisle_compose_carve(aisle_compose *self, aisle_arena *arena);
+
+// Begins: lays the geometry. AISLE_ERR_CAPACITY: more waypoints than a path_t holds.
+aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path);
+
+// Measures clearances; at the end fills speeds and sums. AISLE_BUSY, then AISLE_OK; AISLE_ERR_ARG: degenerate geometry.
+aisle_status aisle_compose_step(aisle_compose *self, uint32_t units, uint32_t *spent);
+
+// Any heading will do?
+bool aisle_goal_heading_is_free(const aisle_goal_msg *goal);
+#endif

@@ -1,0 +1,17 @@
+// leg.h - one leg of a request: the way from one stop to the next goal, as planned so far. Level 4.
+#ifndef AISLE_PLAN_LEG_H
+#define AISLE_PLAN_LEG_H
+
+#include "aisle/messages.h"
+#include "base/vec.h"
+#include "plan/swarm.h"
+
+typedef struct aisle_leg {
+    uint32_t first, count;   // of its seed polyline in the route's points
+    uint32_t via_count;      // points of the swarm's best, start and goal included; 0 = none
+    bool use_swarm;          // build from the swarm's best, else from the seed
+    aisle_space_mode mode;   // the body the seed was found with
+    double seed_value, swarm_value; // measured cost of either way of building it; negative = not measured
+    aisle_vec2 via[AISLE_SWARM_VIAS + 2U];
+} aisle_leg;
+#endif

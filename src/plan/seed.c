@@ -1,0 +1,255 @@
+#include "plan/seed.h"
+
+#include "base/check.h"
+#include "plan/cost.h"
+
+#include <math.h>
+
+void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits) {
+    aisle_astar_carve(&self->search, arena, limits->cells, limits->open_nodes);
+    self->cells = (uint32_t *)aisle_arena_take(arena, AISLE_SEED_CELLS_MAX, sizeof(uint32_t));
+    self->factor = (uint16_t *)aisle_arena_take(arena, AISLE_SEED_TABLE, sizeof(uint16_t));
+}
+
+static uint16_t factor_at(const aisle_seed *self, uint32_t field) {
+    double clearance = (sqrt((double)field) - 0.5) * self->space->grid->lattice.res - self->space->vehicle->inner_radius;
+    double density = aisle_objective_density(self->objective, clearance, 0.0);
+    return (uint16_t)(density * (double)AISLE_ASTAR_FACTOR_ONE + 0.5);
+}
+
+static void tabulate(aisle_seed *self) {
+    for (uint32_t q = 0; q < AISLE_SEED_TABLE; q++) {
+        self->factor[q] = factor_at(self, q);
+    }
+}
+
+static uint32_t factor_of(const aisle_seed *self, uint32_t cell) {
+    uint32_t field = self->space->grid->field[cell];
+    return field < AISLE_SEED_TABLE ? self->factor[field] : factor_at(self, field);
+}
+
+static uint32_t enter_free_turn(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
+    aisle_seed *self = (aisle_seed *)ctx;
+    (void)from;
+    (void)dir;
+    if (!aisle_space_cell_free(self->space, to, &self->units)) {
+        return AISLE_ASTAR_BARRED_CELL;
+    }
+    return factor_of(self, to);
+}
+
+static uint32_t enter_along(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
+    aisle_seed *self = (aisle_seed *)ctx;
+    (void)dir;
+    const aisle_grid *grid = self->space->grid;
+    double half_diagonal = 0.70710678118654752;
+    if ((sqrt((double)grid->field[to]) + half_diagonal) * grid->lattice.res < self->space->reach) {
+        return AISLE_ASTAR_BARRED_CELL;
+    }
+    aisle_vec2 a = aisle_lattice_centre(&grid->lattice, from);
+    aisle_vec2 b = aisle_lattice_centre(&grid->lattice, to);
+    return aisle_space_sweep_free(self->space, a, b, &self->units) ? factor_of(self, to) : AISLE_ASTAR_BARRED;
+}
+
+static uint32_t enter_width(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
+    const aisle_seed *self = (const aisle_seed *)ctx;
+    (void)from;
+    (void)dir;
+    return self->space->grid->field[to] >= self->open_from ? AISLE_ASTAR_FACTOR_ONE : AISLE_ASTAR_BARRED_CELL;
+}
+
+static bool may_stand(aisle_seed *self, uint32_t cell) {
+    return self->space->mode == AISLE_SPACE_ALONG || aisle_space_cell_free(self->space, cell, &self->units);
+}
+
+// Nearest cell centre around p that is free and that p reaches straight. Ties: the first in row order.
+static bool join(aisle_seed *self, aisle_vec2 p, bool outbound, uint32_t *cell) {
+    const aisle_lattice *lattice = &self->space->grid->lattice;
+    bool inside;
+    uint32_t home = aisle_lattice_cell(lattice, p, &inside);
+    int32_t hx = (int32_t)(home % lattice->w);
+    int32_t hy = (int32_t)(home / lattice->w);
+    double best = 1e9; // m, beyond any window
+    for (int32_t y = hy - AISLE_SEED_JOIN; y <= hy + AISLE_SEED_JOIN; y++) {
+        for (int32_t x = hx - AISLE_SEED_JOIN; x <= hx + AISLE_SEED_JOIN; x++) {
+            if (x < 0 || y < 0 || x >= (int32_t)lattice->w || y >= (int32_t)lattice->h) {
+                continue;
+            }
+            uint32_t at = (uint32_t)y * lattice->w + (uint32_t)x;
+            aisle_vec2 centre = aisle_lattice_centre(lattice, at);
+            double away = aisle_vec2_distance(p, centre);
+            if (away < best && may_stand(self, at) &&
+                aisle_space_sweep_free(self->space, outbound ? p : centre, outbound ? centre : p, &self->units)) {
+                best = away;
+                *cell = at;
+            }
+        }
+    }
+    return best < 1e9;
+}
+
+static aisle_astar_config search_config(aisle_seed *self, aisle_astar_enter_fn enter) {
+    const aisle_lattice *lattice = &self->space->grid->lattice;
+    return (aisle_astar_config){.enter = enter, .ctx = self, .w = lattice->w, .h = lattice->h};
+}
+
+aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, aisle_vec2 start,
+                              aisle_vec2 goal, aisle_vec2 *points) {
+    self->space = space;
+    self->objective = objective;
+    self->start = start;
+    self->goal = goal;
+    self->points = points;
+    self->point_count = 0;
+    self->units = 0;
+    self->by_width = false;
+    tabulate(self);
+    aisle_astar_config cfg =
+        search_config(self, space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along);
+    if (!join(self, start, true, &cfg.start) || !join(self, goal, false, &cfg.goal)) {
+        self->phase = AISLE_SEED_IDLE;
+        return AISLE_PARTIAL;
+    }
+    aisle_status st = aisle_astar_start(&self->search, &cfg);
+    AISLE_ASSERT(st == AISLE_OK);
+    self->phase = AISLE_SEED_SEARCH;
+    return AISLE_OK;
+}
+
+static aisle_vec2 path_point(const aisle_seed *self, uint32_t i) {
+    if (i == 0) {
+        return self->start;
+    }
+    if (i > self->cell_count) {
+        return self->goal;
+    }
+    return aisle_lattice_centre(&self->space->grid->lattice, self->cells[i - 1U]);
+}
+
+// Cost of the way along the path's points from i to j.
+static double chain_cost(aisle_seed *self, uint32_t i, uint32_t j) {
+    double sum = 0.0;
+    for (uint32_t k = i; k < j; k++) {
+        aisle_vec2 a = path_point(self, k);
+        aisle_vec2 b = path_point(self, k + 1U);
+        double clearance = aisle_space_clearance_about(self->space, aisle_vec2_lerp(a, b, 0.5));
+        sum += aisle_vec2_distance(a, b) * aisle_objective_density(self->objective, clearance, 0.0);
+    }
+    self->units += (j - i) / 4U;
+    return sum;
+}
+
+static bool may_cut(aisle_seed *self, uint32_t i, uint32_t j) {
+    aisle_vec2 a = path_point(self, i);
+    aisle_vec2 b = path_point(self, j);
+    if (!aisle_space_sweep_free(self->space, a, b, &self->units)) {
+        return false;
+    }
+    return aisle_objective_is_length(self->objective) ||
+           aisle_leg_cost(self->space, self->objective, a, b, &self->units) <= chain_cost(self, i, j) * (1.0 + 1e-3);
+}
+
+// Index of the point to go to straight from point i: doubling while it works, then halving the doubt.
+static uint32_t farthest_from(aisle_seed *self, uint32_t i) {
+    uint32_t end = self->cell_count + 1U;
+    uint32_t good = i + 1U;
+    uint32_t step = 2U;
+    uint32_t bad = end + 1U;
+    while (good < end) {
+        uint32_t probe = good + step < end ? good + step : end;
+        if (!may_cut(self, i, probe)) {
+            bad = probe;
+            break;
+        }
+        good = probe;
+        step *= 2U;
+    }
+    while (bad - good > 1U && bad <= end) {
+        uint32_t probe = good + (bad - good) / 2U;
+        if (may_cut(self, i, probe)) {
+            good = probe;
+        } else {
+            bad = probe;
+        }
+    }
+    return good;
+}
+
+// Appends points until `units` are spent or the goal is reached.
+static aisle_status straighten(aisle_seed *self, uint32_t units) {
+    uint32_t end = self->cell_count + 1U;
+    while (self->at < end && self->units < units) {
+        if (self->point_count + 1U >= AISLE_SEED_POINTS_MAX) {
+            return AISLE_ERR_CAPACITY;
+        }
+        self->at = farthest_from(self, self->at);
+        aisle_vec2 p = path_point(self, self->at);
+        if (aisle_vec2_distance(p, self->points[self->point_count - 1U]) > 1e-6 || self->at == end) {
+            self->points[self->point_count++] = p;
+        }
+    }
+    return self->at < end ? AISLE_BUSY : AISLE_OK;
+}
+
+static aisle_status search(aisle_seed *self, uint32_t units) {
+    uint32_t before = self->search.expanded;
+    aisle_status st = aisle_astar_step(&self->search, units);
+    self->units += self->search.expanded - before;
+    return st;
+}
+
+static aisle_status begin_straightening(aisle_seed *self) {
+    aisle_status st = aisle_astar_path(&self->search, self->cells, AISLE_SEED_CELLS_MAX, &self->cell_count);
+    if (st != AISLE_OK) {
+        return st;
+    }
+    self->at = 0;
+    self->points[0] = self->start;
+    self->point_count = 1;
+    self->phase = AISLE_SEED_STRAIGHTEN;
+    return AISLE_BUSY;
+}
+
+aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent) {
+    AISLE_ASSERT(self->phase == AISLE_SEED_SEARCH || self->phase == AISLE_SEED_STRAIGHTEN);
+    aisle_status st = AISLE_BUSY;
+    if (self->phase == AISLE_SEED_SEARCH) {
+        st = search(self, units);
+        if (st == AISLE_OK) {
+            st = begin_straightening(self);
+        }
+    } else {
+        st = straighten(self, units);
+        if (st == AISLE_OK) {
+            self->phase = AISLE_SEED_DONE;
+        }
+    }
+    *spent += self->units;
+    self->units = 0;
+    return st;
+}
+
+void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach) {
+    self->space = space;
+    self->by_width = true;
+    self->units = 0;
+    self->phase = AISLE_SEED_SEARCH;
+    // The best point of a cell is at most half a diagonal from its centre, the obstacle at most half a diagonal nearer than the
+    // centre of its cell: open if sqrt(field) >= reach / res - sqrt(2).
+    double cells = reach / space->grid->lattice.res - 1.41421356237309505;
+    self->open_from = cells > 0.0 ? (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX) : 0U;
+    aisle_astar_config cfg = search_config(self, enter_width);
+    bool inside;
+    cfg.start = aisle_lattice_cell(&space->grid->lattice, start, &inside);
+    cfg.goal = aisle_lattice_cell(&space->grid->lattice, goal, &inside);
+    aisle_status st = aisle_astar_start(&self->search, &cfg);
+    AISLE_ASSERT(st == AISLE_OK);
+}
+
+aisle_status aisle_seed_step_width(aisle_seed *self, uint32_t units, uint32_t *spent) {
+    AISLE_ASSERT(self->by_width && self->phase == AISLE_SEED_SEARCH);
+    aisle_status st = search(self, units);
+    *spent += self->units;
+    self->units = 0;
+    return st;
+}

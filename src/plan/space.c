@@ -1,0 +1,210 @@
+#include "plan/space.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+#include "robot/curve.h"
+#include "robot/profile.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SAGITTA_STEP 1e-3 // m, of piece_clearance's subdivision
+#define SUBDIVISIONS_MAX 4096U
+
+void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
+    self->cell_free = (uint64_t *)aisle_arena_take(arena, (size_t)cells / 64U + 1U, sizeof(uint64_t));
+    self->cells = cells;
+}
+
+// Discs of equal radius along the body's x axis that together hold the footprint's box.
+static void cover_with_discs(aisle_space *self) {
+    const aisle_vehicle *vehicle = self->vehicle;
+    aisle_aabb box = {vehicle->footprint[0], vehicle->footprint[0]};
+    for (uint32_t i = 1; i < vehicle->n; i++) {
+        box.lo.x = aisle_min(box.lo.x, vehicle->footprint[i].x);
+        box.lo.y = aisle_min(box.lo.y, vehicle->footprint[i].y);
+        box.hi.x = aisle_max(box.hi.x, vehicle->footprint[i].x);
+        box.hi.y = aisle_max(box.hi.y, vehicle->footprint[i].y);
+    }
+    double half = (box.hi.x - box.lo.x) / 8.0; // of one disc's share
+    double side = aisle_max(-box.lo.y, box.hi.y);
+    for (int i = 0; i < 4; i++) {
+        self->disc_x[i] = box.lo.x + half * (2.0 * i + 1.0);
+    }
+    self->disc_radius = sqrt(half * half + side * side) + vehicle->radius;
+}
+
+void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle, aisle_space_mode mode) {
+    self->layout = layout;
+    self->grid = aisle_layout_grid(layout);
+    self->vehicle = vehicle;
+    self->mode = mode;
+    self->keep = vehicle->margin + AISLE_SPACE_SLACK;
+    self->reach = self->keep + (mode == AISLE_SPACE_FREE_TURN ? vehicle->outer_radius : vehicle->inner_radius);
+    cover_with_discs(self);
+    uint32_t cells = self->grid->lattice.w * self->grid->lattice.h;
+    AISLE_ASSERT(cells <= self->cells);
+    memset(self->cell_free, 0, ((size_t)cells / 64U + 1U) * sizeof(uint64_t));
+}
+
+// Is the disc of radius r about the way from a to b free? Exact.
+static bool capsule_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, double r) {
+    aisle_vec2 ends[2] = {a, b};
+    aisle_convex capsule = {ends, 2U, r};
+    return aisle_layout_gap(self->layout, &capsule, self->grid->lattice.res, NULL) > 0.0;
+}
+
+bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units) {
+    double res = self->grid->lattice.res;
+    double need = sqrt(self->reach * self->reach + 0.5 * res * res);
+    double centre_gap = sqrt((double)self->grid->field[cell]) * res;
+    double half_diagonal = res * 0.70710678118654752;
+    if (centre_gap - half_diagonal >= need) {
+        return true;
+    }
+    if (centre_gap + half_diagonal < need) {
+        return false;
+    }
+    uint64_t bit = 1ULL << (cell % 64U);
+    if ((self->cell_free[cell / 64U] & bit) != 0U) {
+        return true;
+    }
+    *units += 1U;
+    aisle_vec2 centre = aisle_lattice_centre(&self->grid->lattice, cell);
+    if (!capsule_free(self, centre, centre, need)) {
+        return false;
+    }
+    self->cell_free[cell / 64U] |= bit;
+    return true;
+}
+
+// The exact footprint driven straight from a to b, heading along it.
+static bool body_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, double theta) {
+    aisle_vec2 both[2 * AISLE_SHAPE_VERTICES_MAX];
+    aisle_vec2 hull[2 * AISLE_SHAPE_VERTICES_MAX];
+    const aisle_vehicle *vehicle = self->vehicle;
+    aisle_convex_place(vehicle->footprint, vehicle->n, (aisle_pose2){a.x, a.y, theta}, both);
+    aisle_convex_place(vehicle->footprint, vehicle->n, (aisle_pose2){b.x, b.y, theta}, both + vehicle->n);
+    aisle_convex swept = {hull, aisle_convex_hull(both, 2U * vehicle->n, hull), vehicle->radius + self->keep};
+    return aisle_layout_gap(self->layout, &swept, self->grid->lattice.res, NULL) > 0.0;
+}
+
+// Do the covering discs, by the field alone, say that the body within `around` of p is free?
+static bool discs_free(const aisle_space *self, aisle_vec2 p, aisle_vec2 heading, double around) {
+    for (int i = 0; i < 4; i++) {
+        aisle_vec2 centre = aisle_vec2_add(p, aisle_vec2_scale(heading, self->disc_x[i]));
+        if (aisle_grid_gap_lower(self->grid, centre) < self->disc_radius + self->keep + around) {
+            return false;
+        }
+    }
+    return true;
+}
+
+typedef struct sweep {
+    aisle_vec2 a, b, heading;
+    double length, theta;
+} sweep;
+
+// Free way from a + s on, by the field alone; not above 0: in doubt.
+static double free_ahead(const aisle_space *self, const sweep *way, double s) {
+    aisle_vec2 p = aisle_vec2_add(way->a, aisle_vec2_scale(way->heading, s));
+    double around = aisle_grid_gap_lower(self->grid, p) - self->keep;
+    if (around > self->vehicle->outer_radius) {
+        return around - self->vehicle->outer_radius;
+    }
+    return 0.0;
+}
+
+static bool piece_free(const aisle_space *self, const sweep *way, double s0, double s1) {
+    aisle_vec2 p0 = aisle_vec2_add(way->a, aisle_vec2_scale(way->heading, s0));
+    aisle_vec2 p1 = s1 >= way->length ? way->b : aisle_vec2_add(way->a, aisle_vec2_scale(way->heading, s1));
+    if (self->mode == AISLE_SPACE_FREE_TURN) {
+        return capsule_free(self, p0, p1, self->reach);
+    }
+    return discs_free(self, aisle_vec2_lerp(p0, p1, 0.5), way->heading, 0.5 * (s1 - s0)) ||
+           body_free(self, p0, p1, way->theta);
+}
+
+bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units) {
+    aisle_vec2 way_to = aisle_vec2_sub(b, a);
+    sweep way = {a, b, {1.0, 0.0}, aisle_vec2_length(way_to), 0.0};
+    if (way.length > 1e-9) {
+        way.heading = aisle_vec2_scale(way_to, 1.0 / way.length);
+        way.theta = aisle_atan2(way_to.y, way_to.x);
+    }
+    double s = 0.0;
+    double least = 0.5 * self->grid->lattice.res; // a shorter step is not worth a look at the field
+    do {
+        *units += 1U;
+        double ahead = free_ahead(self, &way, s);
+        if (ahead < least) {
+            ahead = aisle_min(AISLE_SPACE_PIECE, way.length - s);
+            if (!piece_free(self, &way, s, s + ahead)) {
+                return false;
+            }
+            ahead = aisle_max(ahead, least);
+        }
+        s += ahead;
+    } while (s < way.length);
+    return true;
+}
+
+double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, int32_t *id) {
+    aisle_vec2 points[AISLE_SHAPE_VERTICES_MAX];
+    aisle_convex body = aisle_vehicle_place(self->vehicle, pose, 0.0, points);
+    return aisle_layout_gap(self->layout, &body, cap, id);
+}
+
+// Distance from p to occupied cells, interpolated between the four centres around p.
+double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p) {
+    const aisle_lattice *lattice = &self->grid->lattice;
+    double fx = aisle_clamp((p.x - lattice->x0) / lattice->res - 0.5, 0.0, (double)(lattice->w - 1U));
+    double fy = aisle_clamp((p.y - lattice->y0) / lattice->res - 0.5, 0.0, (double)(lattice->h - 1U));
+    uint32_t ix = (uint32_t)fx;
+    uint32_t iy = (uint32_t)fy;
+    uint32_t right = ix + 1U < lattice->w ? 1U : 0U;
+    uint32_t up = iy + 1U < lattice->h ? lattice->w : 0U;
+    const uint16_t *at = self->grid->field + (size_t)iy * lattice->w + ix;
+    double tx = fx - (double)ix;
+    double ty = fy - (double)iy;
+    double low = sqrt((double)at[0]) * (1.0 - tx) + sqrt((double)at[right]) * tx;
+    double high = sqrt((double)at[up]) * (1.0 - tx) + sqrt((double)at[up + right]) * tx;
+    double cells = low * (1.0 - ty) + high * ty;
+    return (cells - 0.5) * lattice->res - self->vehicle->inner_radius;
+}
+
+// Least gap over the part [f0, f1] of a piece, given how far body points may stray from the hull of its ends.
+static double part_clearance(const aisle_space *self, aisle_pose2 from, aisle_pose2 to, double stray, double cap) {
+    aisle_vec2 both[2 * AISLE_SHAPE_VERTICES_MAX];
+    aisle_vec2 hull[2 * AISLE_SHAPE_VERTICES_MAX];
+    const aisle_vehicle *vehicle = self->vehicle;
+    aisle_convex_place(vehicle->footprint, vehicle->n, from, both);
+    aisle_convex_place(vehicle->footprint, vehicle->n, to, both + vehicle->n);
+    aisle_convex swept = {hull, aisle_convex_hull(both, 2U * vehicle->n, hull), vehicle->radius};
+    double gap = aisle_layout_gap(self->layout, &swept, cap + stray, NULL);
+    return aisle_max(gap - stray, 0.0);
+}
+
+double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                                   uint32_t *units) {
+    double length = aisle_piece_length(from, to);
+    double turn = aisle_piece_turn(from, to);
+    aisle_pose2 middle = aisle_piece_at(from, to, 0.5);
+    double around = aisle_grid_gap_lower(self->grid, aisle_vec2_of(middle.x, middle.y));
+    *units += 1U;
+    if (around - self->vehicle->outer_radius - 0.5 * length >= AISLE_CLEARANCE_CAP) {
+        return AISLE_CLEARANCE_CAP;
+    }
+    double stray = 0.125 * (fabs((double)to->curvature) * length * length + self->vehicle->outer_radius * turn * turn);
+    double wanted = floor(sqrt(stray / SAGITTA_STEP)) + 1.0;
+    uint32_t parts = wanted < (double)SUBDIVISIONS_MAX ? (uint32_t)wanted : SUBDIVISIONS_MAX;
+    double clearance = AISLE_CLEARANCE_CAP;
+    aisle_pose2 begin = {from->x, from->y, from->theta};
+    for (uint32_t i = 1; i <= parts; i++) {
+        aisle_pose2 end = aisle_piece_at(from, to, (double)i / (double)parts);
+        clearance = part_clearance(self, begin, end, stray / ((double)parts * (double)parts), clearance);
+        begin = end;
+        *units += 1U;
+    }
+    return clearance;
+}

@@ -1,0 +1,190 @@
+#include "plan/swarm.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+
+#include <math.h>
+
+#define SPREAD 0.15F // of the box, where the other particles start
+#define VIA_SPACING 2.0   // m, wished between via-points
+#define SAMPLE_SPACING 0.1 // m, wished between samples
+#define SEED_DEFAULT 20180617U
+
+void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
+    self->work = (float *)aisle_arena_take(
+        arena, AISLE_PSO_WORK_LEN(2U * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES), sizeof(float));
+    self->sample = (aisle_spline_sample *)aisle_arena_take(arena, AISLE_SWARM_SAMPLES_MAX, sizeof(aisle_spline_sample));
+}
+
+// How far the footprint's margin is violated at a sample: 0 if kept. The field decides where it can.
+static double shortfall(aisle_swarm *self, const aisle_spline_sample *at, double *clearance) {
+    const aisle_space *space = self->space;
+    const aisle_vehicle *vehicle = space->vehicle;
+    *clearance = aisle_space_clearance_about(space, at->p);
+    double lower = aisle_grid_gap_lower(space->grid, at->p);
+    if (lower - vehicle->outer_radius >= space->keep) {
+        return 0.0;
+    }
+    if (aisle_grid_gap_upper(space->grid, at->p) - vehicle->inner_radius < 0.0) {
+        return space->keep - aisle_min(*clearance, 0.0);
+    }
+    self->units += 1U;
+    aisle_pose2 pose = {at->p.x, at->p.y, aisle_atan2(at->d1.y, at->d1.x)};
+    double gap = aisle_space_gap(space, pose, space->keep, NULL);
+    return gap >= space->keep ? 0.0 : space->keep - gap;
+}
+
+static aisle_pso_cost score(aisle_swarm *self) {
+    double violation = 0.0;
+    double value = 0.0;
+    double curvature_max = self->space->vehicle->curvature_max;
+    for (uint32_t i = 0; i < self->samples; i++) {
+        const aisle_spline_sample *at = &self->sample[i];
+        double ds = 0.0;
+        if (i > 0) {
+            ds += 0.5 * aisle_vec2_distance(at->p, self->sample[i - 1U].p);
+        }
+        if (i + 1U < self->samples) {
+            ds += 0.5 * aisle_vec2_distance(at->p, self->sample[i + 1U].p);
+        }
+        double clearance;
+        double curvature = aisle_spline_curvature(at);
+        violation += ds * shortfall(self, at, &clearance);
+        if (curvature_max > 0.0 && fabs(curvature) > curvature_max) {
+            violation += ds * (fabs(curvature) - curvature_max) / curvature_max;
+        }
+        value += ds * aisle_objective_density(self->objective, clearance, curvature);
+    }
+    self->units += self->samples / AISLE_SWARM_SAMPLES_PER_UNIT;
+    return (aisle_pso_cost){(float)violation, (float)value};
+}
+
+static uint32_t via_points(const aisle_swarm *self, const float *x, aisle_vec2 *points) {
+    points[0] = self->start;
+    for (uint32_t i = 0; i < self->vias; i++) {
+        aisle_vec2 offset = {(double)x[2U * i], (double)x[2U * i + 1U]};
+        points[i + 1U] = aisle_vec2_add(self->base[i], offset);
+    }
+    points[self->vias + 1U] = self->goal;
+    return self->vias + 2U;
+}
+
+static aisle_pso_cost cost(void *ctx, const float *x) {
+    aisle_swarm *self = (aisle_swarm *)ctx;
+    aisle_vec2 points[AISLE_SWARM_VIAS + 2U];
+    uint32_t n = via_points(self, x, points);
+    if (aisle_spline_fit(&self->spline, self->kind, points, n) != AISLE_OK) {
+        return (aisle_pso_cost){INFINITY, INFINITY};
+    }
+    aisle_spline_resample(&self->spline, self->samples, self->sample);
+    return score(self);
+}
+
+static double polyline_length(const aisle_vec2 *points, uint32_t count) {
+    double length = 0.0;
+    for (uint32_t i = 0; i + 1U < count; i++) {
+        length += aisle_vec2_distance(points[i], points[i + 1U]);
+    }
+    return length;
+}
+
+// Point at arc length s along the polyline.
+static aisle_vec2 along(const aisle_vec2 *points, uint32_t count, double s) {
+    for (uint32_t i = 0; i + 1U < count; i++) {
+        double leg = aisle_vec2_distance(points[i], points[i + 1U]);
+        if (s <= leg && leg > 0.0) {
+            return aisle_vec2_lerp(points[i], points[i + 1U], s / leg);
+        }
+        s -= leg;
+    }
+    return points[count - 1U];
+}
+
+// Via-points: every inner point of the polyline, and more in between where legs are long, in proportion.
+static void place_vias(aisle_swarm *self, const aisle_vec2 *points, uint32_t count, double length) {
+    uint32_t inner = count - 2U;
+    double wished = floor(length / VIA_SPACING);
+    uint32_t vias = wished < (double)AISLE_SWARM_VIAS ? (uint32_t)wished : AISLE_SWARM_VIAS;
+    vias = vias < 2U ? 2U : vias;
+    self->vias = 0;
+    double spacing = length / (double)(vias + 1U);
+    uint32_t spare = inner < vias ? vias - inner : 0U;
+    for (uint32_t i = 0; i + 1U < count; i++) {
+        double leg = aisle_vec2_distance(points[i], points[i + 1U]);
+        double more = floor(leg / spacing);
+        uint32_t extra = more < (double)spare ? (uint32_t)more : spare;
+        spare -= extra;
+        for (uint32_t k = 1; k <= extra; k++) {
+            self->base[self->vias++] = aisle_vec2_lerp(points[i], points[i + 1U], (double)k / (double)(extra + 1U));
+        }
+        if (i + 2U < count) {
+            self->base[self->vias++] = points[i + 1U];
+        }
+    }
+    if (self->vias == 0U) {
+        self->base[self->vias++] = along(points, count, 0.5 * length);
+    }
+    AISLE_ASSERT(self->vias <= AISLE_SWARM_VIAS);
+}
+
+static void configure(aisle_swarm *self, const aisle_options_msg *options, double length) {
+    for (uint32_t i = 0; i < 2U * self->vias; i++) {
+        self->lo[i] = -(float)AISLE_SWARM_REACH;
+        self->hi[i] = (float)AISLE_SWARM_REACH;
+        self->guess[i] = 0.0F;
+    }
+    double wished = options->num_samples > 0 ? (double)options->num_samples : floor(length / SAMPLE_SPACING) + 2.0;
+    self->samples = (uint32_t)aisle_clamp(wished, 16.0, (double)AISLE_SWARM_SAMPLES_MAX);
+    self->config = (aisle_pso_config){.cost = cost,
+                                      .cost_ctx = self,
+                                      .lo = self->lo,
+                                      .hi = self->hi,
+                                      .guess = self->guess,
+                                      .spread = SPREAD,
+                                      .inertia = AISLE_PSO_FALLING,
+                                      .seed = options->seed != 0 ? (uint64_t)(uint32_t)options->seed : SEED_DEFAULT,
+                                      .eval_max = AISLE_SWARM_EVALS,
+                                      .stall_max = AISLE_SWARM_STALL,
+                                      .value_goal = -INFINITY,
+                                      .dim = (uint16_t)(2U * self->vias),
+                                      .particles = AISLE_SWARM_PARTICLES};
+}
+
+aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, const aisle_objective *objective,
+                               const aisle_options_msg *options, const aisle_vec2 *points, uint32_t count) {
+    double length = polyline_length(points, count);
+    if (length < 0.2 || count > AISLE_SWARM_VIAS + 2U) {
+        return AISLE_PARTIAL;
+    }
+    self->space = space;
+    self->objective = objective;
+    self->kind = options->interpolation == AISLE_OPTIONS_LINEAR ? AISLE_SPLINE_LINEAR : AISLE_SPLINE_CUBIC;
+    self->start = points[0];
+    self->goal = points[count - 1U];
+    self->units = 0;
+    place_vias(self, points, count, length);
+    configure(self, options, length);
+    self->seed_cost = cost(self, self->guess);
+    aisle_status st = aisle_pso_start(&self->pso, &self->config, self->work,
+                                      AISLE_PSO_WORK_LEN(2U * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES));
+    AISLE_ASSERT(st == AISLE_OK);
+    return AISLE_OK;
+}
+
+aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent) {
+    aisle_status st = AISLE_BUSY;
+    while (st == AISLE_BUSY && self->units < units) {
+        st = aisle_pso_step(&self->pso, 1U);
+    }
+    *spent += self->units;
+    self->units = 0;
+    return st == AISLE_BUSY ? AISLE_BUSY : AISLE_OK;
+}
+
+uint32_t aisle_swarm_best(const aisle_swarm *self, aisle_vec2 *points) {
+    const float *best = aisle_pso_best(&self->pso);
+    if (best == NULL || self->pso.best_cost.violation > 0.0F) {
+        return 0;
+    }
+    return via_points(self, best, points);
+}

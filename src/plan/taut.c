@@ -1,0 +1,211 @@
+#include "plan/taut.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+#include "plan/cost.h"
+
+#include <math.h>
+
+#define RESOLUTION 5e-4 // m, of a slide
+#define POINT_MOVES_UNITS 8U
+
+void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_objective *objective, double arc_radius,
+                      aisle_vec2 *points, uint32_t count, uint32_t capacity) {
+    AISLE_ASSERT(count >= 2 && count <= capacity);
+    *self = (aisle_taut){.space = space,
+                         .objective = objective,
+                         .points = points,
+                         .count = count,
+                         .capacity = capacity,
+                         .at = 1,
+                         .arc_radius = arc_radius,
+                         .cost = -1.0};
+}
+
+static double leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
+    return aisle_leg_cost(self->space, self->objective, a, b, &self->units);
+}
+
+// Length an arc saves at the corner a-b-c.
+static double arc_saving(const aisle_taut *self, aisle_vec2 a, aisle_vec2 b, aisle_vec2 c) {
+    aisle_vec2 u = aisle_vec2_sub(b, a);
+    aisle_vec2 v = aisle_vec2_sub(c, b);
+    double lu = aisle_vec2_length(u);
+    double lv = aisle_vec2_length(v);
+    double turn = fabs(aisle_atan2(aisle_vec2_cross(u, v), aisle_vec2_dot(u, v)));
+    if (turn < 1e-6 || turn > 3.0) {
+        return 0.0;
+    }
+    double sine, cosine;
+    aisle_sincos(0.5 * turn, &sine, &cosine);
+    double tan_half = sine / cosine; // turn <= 3.0: cosine >= 0.07
+    double cut = aisle_min(self->arc_radius * tan_half, 0.5 * aisle_min(lu, lv));
+    return cut * (2.0 - turn / tan_half);
+}
+
+static double point_saving(const aisle_taut *self, uint32_t i) {
+    if (i == 0 || i + 1U >= self->count) {
+        return 0.0;
+    }
+    return arc_saving(self, self->points[i - 1U], self->points[i], self->points[i + 1U]);
+}
+
+// Cost of everything that depends on the points first..last: the legs between them and the corners at and between them.
+static double span_cost(aisle_taut *self, uint32_t first, uint32_t last) {
+    double sum = 0.0;
+    for (uint32_t i = first; i < last; i++) {
+        sum += leg_cost(self, self->points[i], self->points[i + 1U]);
+    }
+    for (uint32_t i = first; i <= last; i++) {
+        sum -= point_saving(self, i);
+    }
+    return sum;
+}
+
+static bool free_between(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
+    return aisle_space_sweep_free(self->space, a, b, &self->units);
+}
+
+static void delete_point(aisle_taut *self, uint32_t i) {
+    for (uint32_t k = i; k + 1U < self->count; k++) {
+        self->points[k] = self->points[k + 1U];
+    }
+    self->count--;
+}
+
+static void insert_point(aisle_taut *self, uint32_t i, aisle_vec2 p) {
+    AISLE_ASSERT(self->count < self->capacity);
+    for (uint32_t k = self->count; k > i; k--) {
+        self->points[k] = self->points[k - 1U];
+    }
+    self->points[i] = p;
+    self->count++;
+}
+
+static bool try_remove(aisle_taut *self, uint32_t i) {
+    aisle_vec2 a = self->points[i - 1U];
+    aisle_vec2 b = self->points[i];
+    aisle_vec2 c = self->points[i + 1U];
+    if (!aisle_objective_is_length(self->objective) &&
+        leg_cost(self, a, c) > leg_cost(self, a, b) + leg_cost(self, b, c) - arc_saving(self, a, b, c)) {
+        return false;
+    }
+    if (!free_between(self, a, c)) {
+        return false;
+    }
+    delete_point(self, i);
+    return true;
+}
+
+// Farthest fraction of the way from b to `anchor` at which the leg to `other` stays free.
+static double slide_limit(aisle_taut *self, aisle_vec2 b, aisle_vec2 anchor, aisle_vec2 other, bool outbound) {
+    double good = 0.0;
+    double bad = 1.0;
+    double stop = RESOLUTION / aisle_max(aisle_vec2_distance(b, anchor), RESOLUTION);
+    while (bad - good > stop) {
+        double t = 0.5 * (good + bad);
+        aisle_vec2 p = aisle_vec2_lerp(b, anchor, t);
+        if (outbound ? free_between(self, p, other) : free_between(self, other, p)) {
+            good = t;
+        } else {
+            bad = t;
+        }
+    }
+    return good;
+}
+
+// Length only: slides point i towards neighbour `to` as far as the leg to the other neighbour allows.
+static void slide_far(aisle_taut *self, uint32_t i, uint32_t to, uint32_t other) {
+    aisle_vec2 b = self->points[i];
+    double t = slide_limit(self, b, self->points[to], self->points[other], to < i);
+    self->points[i] = aisle_vec2_lerp(b, self->points[to], t);
+}
+
+// Other densities: slides by a half, quarter, eighth, if that costs less.
+static void slide_some(aisle_taut *self, uint32_t i, uint32_t to, uint32_t other) {
+    aisle_vec2 b = self->points[i];
+    double before = leg_cost(self, b, self->points[to]) + leg_cost(self, b, self->points[other]);
+    for (double t = 0.5; t > 0.1; t *= 0.5) {
+        aisle_vec2 p = aisle_vec2_lerp(b, self->points[to], t);
+        double after = leg_cost(self, p, self->points[to]) + leg_cost(self, p, self->points[other]);
+        bool outbound = to < i;
+        if (after < before * (1.0 - AISLE_TAUT_GAIN) &&
+            (outbound ? free_between(self, p, self->points[other]) : free_between(self, self->points[other], p))) {
+            self->points[i] = p;
+            return;
+        }
+    }
+}
+
+// Replaces b by two points at the same fraction of both legs, as far out as the straight way between them is free.
+static bool try_cut(aisle_taut *self, uint32_t i) {
+    if (self->count >= self->capacity) {
+        return false;
+    }
+    aisle_vec2 a = self->points[i - 1U];
+    aisle_vec2 b = self->points[i];
+    aisle_vec2 c = self->points[i + 1U];
+    uint32_t from = i >= 2U ? i - 2U : 0U; // the neighbours' arcs change too
+    double before = span_cost(self, from, i + 2U < self->count ? i + 2U : i + 1U);
+    double good = 0.0;
+    double bad = 1.0;
+    for (int k = 0; k < 10; k++) {
+        double t = 0.5 * (good + bad);
+        if (free_between(self, aisle_vec2_lerp(b, a, t), aisle_vec2_lerp(b, c, t))) {
+            good = t;
+        } else {
+            bad = t;
+        }
+    }
+    if (good <= 0.0) {
+        return false;
+    }
+    self->points[i] = aisle_vec2_lerp(b, a, good);
+    insert_point(self, i + 1U, aisle_vec2_lerp(b, c, good));
+    double after = span_cost(self, from, i + 3U < self->count ? i + 3U : i + 2U);
+    if (after < before - aisle_max(1e-4, before * AISLE_TAUT_GAIN)) {
+        return true;
+    }
+    delete_point(self, i + 1U);
+    self->points[i] = b;
+    return false;
+}
+
+static void improve_point(aisle_taut *self, uint32_t i) {
+    if (try_remove(self, i)) {
+        return;
+    }
+    if (aisle_objective_is_length(self->objective)) {
+        slide_far(self, i, i - 1U, i + 1U);
+        slide_far(self, i, i + 1U, i - 1U);
+    } else {
+        slide_some(self, i, i - 1U, i + 1U);
+        slide_some(self, i, i + 1U, i - 1U);
+    }
+    if (try_cut(self, i)) {
+        self->at++;
+    }
+    self->at++;
+}
+
+aisle_status aisle_taut_step(aisle_taut *self, uint32_t units, uint32_t *spent) {
+    aisle_status st = AISLE_BUSY;
+    while (st == AISLE_BUSY && self->units < units) {
+        if (self->at + 1U < self->count) {
+            improve_point(self, self->at);
+            self->units += POINT_MOVES_UNITS;
+            continue;
+        }
+        double cost = span_cost(self, 0, self->count - 1U);
+        bool settled = self->cost >= 0.0 && self->cost - cost <= AISLE_TAUT_GAIN * cost;
+        self->cost = cost;
+        self->at = 1;
+        self->pass++;
+        if (settled || self->pass >= AISLE_TAUT_PASSES || self->count <= 2U) {
+            st = AISLE_OK;
+        }
+    }
+    *spent += self->units;
+    self->units = 0;
+    return st;
+}

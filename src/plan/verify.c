@@ -1,0 +1,296 @@
+#include "plan/verify.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+#include "plan/verify_parts.h"
+#include "wire/codec.h"
+
+#include <string.h>
+
+#define START_TOLERANCE 1e-6                                   // m, rad
+#define GOAL_TOLERANCE 0.05                                    // m, rad, where a goal says 0
+#define CLOSE(a, b) (fabs((a) - (b)) <= 1e-4 + 3e-5 * fabs(b)) // sums as floats
+
+static aisle_status fail(aisle_verify *self, aisle_verify_fault fault, uint32_t waypoint) {
+    AISLE_ASSERT(fault != AISLE_VERIFY_NONE);
+    self->fault = fault;
+    self->fault_waypoint = waypoint;
+    self->phase = AISLE_VERIFY_PHASE_DONE;
+    return AISLE_ERR_DATA;
+}
+
+static uint32_t waypoints(const aisle_verify *self) {
+    return (uint32_t)self->path->num_waypoints;
+}
+
+static bool has_flag(const aisle_waypoint_msg *w, int16_t flag) {
+    return (w->flags & flag) != 0;
+}
+
+// ---- the header
+
+static bool is_at_least_zero(float x) {
+    return x >= 0.0F && x <= FLT_MAX;
+} // false for NaN
+
+static bool layout_stands(const aisle_verify *self) {
+    const aisle_layout *layout = self->request.layout;
+    return aisle_layout_is_in_force(layout) && aisle_layout_map_id(layout) == self->map_id &&
+           aisle_layout_map_revision(layout) == self->map_revision;
+}
+
+static bool counts_are_fit(const aisle_path_msg *path) {
+    bool status =
+        path->status == AISLE_PATH_OK || path->status == AISLE_PATH_PARTIAL || path->status == AISLE_PATH_STOP;
+    bool count = path->num_waypoints >= 1 && path->num_waypoints <= AISLE_PATH_MAX_WAYPOINTS;
+    return status && count && path->num_base >= 0 && path->num_base <= path->num_waypoints;
+}
+
+static bool numbers_are_fit(const aisle_path_msg *path) {
+    return is_at_least_zero(path->length) && is_at_least_zero(path->length_bound) && is_at_least_zero(path->duration) &&
+           is_at_least_zero(path->energy) && is_at_least_zero(path->risk) && path->risk <= 1.001F &&
+           is_at_least_zero(path->clearance_min) && is_at_least_zero(path->clearance_moving_min) &&
+           is_at_least_zero(path->planning_time);
+}
+
+static bool certificate_is_right(const aisle_verify *self) {
+    const aisle_path_msg *path = self->path;
+    return path->map_id == self->map_id && path->map_revision == self->map_revision &&
+           path->vehicle_revision == self->request.vehicle->revision &&
+           (uint32_t)path->certificate == aisle_path_certificate(path);
+}
+
+static aisle_verify_fault header_fault(aisle_verify *self) {
+    const aisle_verify_request *request = &self->request;
+    if (!aisle_release_crc(request->bytes, request->size, &self->crc) ||
+        aisle_msg_decode(AISLE_MSG_PATH, request->bytes, request->size, self->path, NULL) != AISLE_OK ||
+        !counts_are_fit(self->path) || !numbers_are_fit(self->path)) {
+        return AISLE_VERIFY_DECODE;
+    }
+    return certificate_is_right(self) ? AISLE_VERIFY_NONE : AISLE_VERIFY_CERTIFICATE;
+}
+
+// ---- start and goals
+
+static bool starts_where_it_must(const aisle_verify *self) {
+    const aisle_waypoint_msg *w = &self->path->waypoints[0];
+    const aisle_pose2 *start = &self->request.start;
+    return fabs(w->x - start->x) <= START_TOLERANCE && fabs(w->y - start->y) <= START_TOLERANCE &&
+           fabs(aisle_angle_difference(start->theta, w->theta)) <= START_TOLERANCE;
+}
+
+static double tolerance_of(float wanted) {
+    return wanted > 0.0F ? (double)wanted : GOAL_TOLERANCE;
+}
+
+static bool reaches(const aisle_waypoint_msg *w, const aisle_goal_msg *goal) {
+    double distance = aisle_vec2_distance(aisle_vec2_of(w->x, w->y), aisle_vec2_of(goal->x, goal->y));
+    double turn = fabs(aisle_angle_difference(goal->theta, w->theta));
+    bool any_heading = (double)goal->tolerance_theta >= AISLE_PI - 1e-6; // pi as float
+    return distance <= tolerance_of(goal->tolerance_xy) + 1e-9 &&
+           (any_heading || turn <= tolerance_of(goal->tolerance_theta) + 1e-9);
+}
+
+static aisle_verify_fault goal_fault(const aisle_verify *self, uint32_t i) {
+    const aisle_waypoint_msg *w = &self->path->waypoints[i];
+    if (!has_flag(w, AISLE_WAYPOINT_GOAL)) {
+        return AISLE_VERIFY_NONE;
+    }
+    if (self->goals >= self->request.num_goals) {
+        return AISLE_VERIFY_GOAL;
+    }
+    const aisle_goal_msg *goal = &self->request.goals[self->goals];
+    if (w->goal_id != goal->id || !reaches(w, goal)) {
+        return AISLE_VERIFY_GOAL;
+    }
+    return goal->dwell > 0.0F && (double)w->v > VERIFY_REST ? AISLE_VERIFY_REST : AISLE_VERIFY_NONE;
+}
+
+static bool has_arrived(const aisle_verify *self) {
+    if (self->path->status != AISLE_PATH_OK) {
+        return true;
+    }
+    return self->goals == self->request.num_goals &&
+           has_flag(&self->path->waypoints[waypoints(self) - 1], AISLE_WAYPOINT_GOAL);
+}
+
+// ---- waypoint by waypoint
+
+// Takes in hand the piece that ends at waypoint i; waypoint 0: standing there. False: there is no such piece.
+static bool take_piece(aisle_verify *self, uint32_t i) {
+    const aisle_waypoint_msg *w = self->path->waypoints;
+    double dwell = 0.0;
+    if (i == 0) {
+        self->piece = aisle_verify_piece_standing(&w[0]);
+        return true;
+    }
+    if (!aisle_verify_piece_between(&w[i - 1], &w[i], &self->piece)) {
+        return false;
+    }
+    if (has_flag(&w[i - 1], AISLE_WAYPOINT_GOAL)) { // the one counted last
+        AISLE_ASSERT(self->goals >= 1 && self->goals <= self->request.num_goals);
+        dwell = (double)self->request.goals[self->goals - 1].dwell;
+    }
+    aisle_verify_time_piece(self, i, aisle_max(dwell, 0.0), &self->piece);
+    return true;
+}
+
+static aisle_verify_fault first_waypoint_fault(const aisle_verify *self) {
+    const aisle_waypoint_msg *w = &self->path->waypoints[0];
+    if (!starts_where_it_must(self)) {
+        return AISLE_VERIFY_START;
+    }
+    if (fabs((double)w->t) > 1e-6) {
+        return AISLE_VERIFY_TIME;
+    }
+    return fabs((double)w->s) > 1e-6 ? AISLE_VERIFY_SUMS : AISLE_VERIFY_NONE;
+}
+
+static aisle_verify_fault waypoint_fault(aisle_verify *self, uint32_t i) {
+    aisle_verify_fault fault = aisle_verify_waypoint_fault(self, i);
+    if (fault != AISLE_VERIFY_NONE) {
+        return fault;
+    }
+    if (!take_piece(self, i)) {
+        return AISLE_VERIFY_DECODE;
+    }
+    fault = i == 0 ? first_waypoint_fault(self) : aisle_verify_piece_fault(self, i);
+    if (fault != AISLE_VERIFY_NONE) {
+        return fault;
+    }
+    self->s += self->piece.length;
+    self->along = aisle_verify_piece_direction(&self->piece, true);
+    return goal_fault(self, i);
+}
+
+static aisle_verify_fault sums_fault(const aisle_verify *self) {
+    const aisle_path_msg *path = self->path;
+    if (!has_arrived(self)) {
+        return AISLE_VERIFY_GOAL;
+    }
+    double length = (double)path->length, end = (double)path->waypoints[waypoints(self) - 1].t;
+    bool ok = CLOSE(length, self->s) && CLOSE((double)path->duration, end) &&
+              (double)path->length_bound <= length * (1.0 + 1e-6);
+    return ok ? AISLE_VERIFY_NONE : AISLE_VERIFY_SUMS;
+}
+
+// ---- steps
+
+static aisle_status step_header(aisle_verify *self) {
+    aisle_verify_fault fault = header_fault(self);
+    if (fault != AISLE_VERIFY_NONE) {
+        return fail(self, fault, 0);
+    }
+    self->phase = AISLE_VERIFY_PHASE_WAYPOINTS;
+    return AISLE_BUSY;
+}
+
+static void count_goal(aisle_verify *self, uint32_t i) {
+    self->goals += has_flag(&self->path->waypoints[i], AISLE_WAYPOINT_GOAL) ? 1U : 0U;
+}
+
+// Takes up the motion from the first piece; a lone waypoint is a place to stand.
+static void begin_motion(aisle_verify *self) {
+    self->phase = AISLE_VERIFY_PHASE_MOTION;
+    self->goals = 0;
+    self->at = waypoints(self) == 1 ? 0 : 1;
+    if (self->at == 1) {
+        count_goal(self, 0);
+    }
+    bool taken = take_piece(self, self->at);
+    AISLE_ASSERT(taken);
+    aisle_verify_motion_begin(self);
+}
+
+static aisle_status step_waypoint(aisle_verify *self) {
+    aisle_verify_fault fault = waypoint_fault(self, self->at);
+    if (fault != AISLE_VERIFY_NONE) {
+        return fail(self, fault, self->at);
+    }
+    count_goal(self, self->at);
+    if (++self->at < waypoints(self)) {
+        return AISLE_BUSY;
+    }
+    fault = sums_fault(self);
+    if (fault != AISLE_VERIFY_NONE) {
+        return fail(self, fault, waypoints(self) - 1);
+    }
+    begin_motion(self);
+    return AISLE_BUSY;
+}
+
+// All proved; the bytes must still be the ones that were read.
+static aisle_status finish(aisle_verify *self) {
+    uint32_t crc;
+    if (!aisle_release_crc(self->request.bytes, self->request.size, &crc) || crc != self->crc) {
+        return fail(self, AISLE_VERIFY_DECODE, 0);
+    }
+    self->phase = AISLE_VERIFY_PHASE_DONE;
+    return AISLE_OK;
+}
+
+static aisle_status step_motion(aisle_verify *self) {
+    aisle_status status = aisle_verify_motion_step(self);
+    if (status == AISLE_ERR_DATA) {
+        return fail(self, self->fault, self->at);
+    }
+    if (status == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    count_goal(self, self->at);
+    if (++self->at >= waypoints(self)) {
+        return finish(self);
+    }
+    bool taken = take_piece(self, self->at);
+    AISLE_ASSERT(taken);
+    aisle_verify_motion_begin(self);
+    return AISLE_BUSY;
+}
+
+static aisle_status step_once(aisle_verify *self) {
+    switch (self->phase) {
+    case AISLE_VERIFY_PHASE_HEADER:
+        return step_header(self);
+    case AISLE_VERIFY_PHASE_WAYPOINTS:
+        return step_waypoint(self);
+    case AISLE_VERIFY_PHASE_MOTION:
+        return step_motion(self);
+    case AISLE_VERIFY_PHASE_DONE:
+        break;
+    }
+    return self->fault == AISLE_VERIFY_NONE ? AISLE_OK : AISLE_ERR_DATA;
+}
+
+void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request, aisle_path_msg *decoded) {
+    const aisle_vehicle *vehicle = request->vehicle;
+    AISLE_ASSERT(request->layout != NULL && vehicle != NULL && request->bytes != NULL && decoded != NULL);
+    AISLE_ASSERT(vehicle->n >= 1 && vehicle->n <= AISLE_SHAPE_VERTICES_MAX);
+    AISLE_ASSERT(request->num_goals == 0 || request->goals != NULL);
+    memset(self, 0, sizeof *self);
+    self->request = *request;
+    self->path = decoded;
+    self->map_id = aisle_layout_map_id(request->layout);
+    self->map_revision = aisle_layout_map_revision(request->layout);
+    for (uint32_t i = 0; i < vehicle->n; i++) {
+        self->lever = aisle_max(self->lever, aisle_vec2_length(vehicle->footprint[i]));
+    }
+}
+
+aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spent, aisle_stamp *stamp) {
+    aisle_status status = AISLE_BUSY;
+    *stamp = (aisle_stamp){0, 0};
+    if (self->phase != AISLE_VERIFY_PHASE_DONE && !layout_stands(self)) {
+        status = fail(self, AISLE_VERIFY_CERTIFICATE, self->at);
+    }
+    if (self->phase == AISLE_VERIFY_PHASE_DONE) {
+        status = step_once(self); // repeats the answer
+    }
+    for (uint32_t left = units; status == AISLE_BUSY && left > 0; left--) {
+        status = step_once(self);
+        *spent += 1;
+    }
+    if (status == AISLE_OK) {
+        *stamp = (aisle_stamp){.crc = self->crc, .size = (uint32_t)self->request.size};
+    }
+    return status;
+}

@@ -1,0 +1,53 @@
+// verify_parts.h - what the verifier's files ask of each other; nobody else's. Level 4.
+#ifndef AISLE_PLAN_VERIFY_PARTS_H
+#define AISLE_PLAN_VERIFY_PARTS_H
+
+#include "plan/verify.h"
+
+#include <float.h>
+
+#define VERIFY_TOLERANCE 1e-3       // relative, of limits
+#define VERIFY_REST 1e-6            // m/s; slower is at rest
+#define VERIFY_SAME_PLACE 1e-9      // m
+#define VERIFY_TIE 1e-6             // rad, how near half a turn both ways are proved
+#define VERIFY_HEADING 2e-3         // rad, heading off the direction of motion
+#define VERIFY_TIME_STEP_MAX 1.1e-3 // s, what a time may be later for being 1 ms after the one before
+
+// ---- verify_piece.c
+// Change of heading from a to b, both in [-pi, pi], the short way.
+double aisle_verify_turn(double a, double b);
+
+// The curve from one waypoint to the next. False: they define none. time and peak stay 0.
+bool aisle_verify_piece_between(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to, aisle_verify_piece *out);
+
+// A vehicle that stands at w.
+aisle_verify_piece aisle_verify_piece_standing(const aisle_waypoint_msg *w);
+
+// The origin at u in [0, 1] of the piece; exact at the ends but for rounding.
+aisle_vec2 aisle_verify_piece_origin(const aisle_verify_piece *piece, double u);
+
+// Direction the origin moves in at the first (end false) or last point, rad, not wrapped.
+double aisle_verify_piece_direction(const aisle_verify_piece *piece, bool end);
+
+// ---- verify_limits.c
+// Fills time and peak of piece i; dwell (s) is spent at rest before it.
+void aisle_verify_time_piece(const aisle_verify *self, uint32_t i, double dwell, aisle_verify_piece *piece);
+
+// What is wrong with waypoint i taken alone.
+aisle_verify_fault aisle_verify_waypoint_fault(const aisle_verify *self, uint32_t i);
+
+// What is wrong with piece i (self->piece), self->s and self->along being those before it.
+aisle_verify_fault aisle_verify_piece_fault(const aisle_verify *self, uint32_t i);
+
+// ---- verify_motion.c
+// Takes the whole of self->piece in hand.
+void aisle_verify_motion_begin(aisle_verify *self);
+
+// Looks at one interval. AISLE_OK: the piece is proved; AISLE_BUSY; AISLE_ERR_DATA: fault, fault_id and fault_at are
+// set.
+aisle_status aisle_verify_motion_step(aisle_verify *self);
+
+// ---- release.c
+// crc of a path_t with the lease's two times taken as 0. False: too short for one.
+bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc);
+#endif

@@ -1,0 +1,38 @@
+// why.h - why the grid found no way: the narrowest gap on the widest way, or no way at all. Level 4.
+//
+// 1. Proof: does an optimistic grid (seed.h, WIDTH) for the disc that the footprint holds plus the margin still connect? If not, no way
+//    exists at any heading. If it does, nothing is proved: the way may pass below the grid's resolution, or need manoeuvres.
+// 2. The widest way: bisection over the field's values for the largest one whose cells still connect; 1 fails too: walled in.
+// 3. Its narrowest place: the path's cells of least field value, each moved across the path to where the exact gap is largest;
+//    the least of these is half the gap told.
+// Memory: none of its own. Time: up to about 14 grid searches, sliced.
+#ifndef AISLE_PLAN_WHY_H
+#define AISLE_PLAN_WHY_H
+
+#include "plan/seed.h"
+
+typedef enum aisle_why_stage {
+    AISLE_WHY_PROVE,  // does the optimistic grid connect at the margin?
+    AISLE_WHY_ANY,    // does anything connect?
+    AISLE_WHY_BISECT, // how wide at most?
+    AISLE_WHY_WIDEST  // the widest way itself
+} aisle_why_stage;
+
+typedef struct aisle_why {
+    aisle_seed *seed;
+    aisle_space *space;
+    aisle_vec2 start, goal;
+    aisle_why_stage stage;
+    uint32_t lo, hi; // field values: lo connects, hi does not
+    bool proved;     // there is no way at this margin
+    bool connected;  // for something narrower there is
+    double width;    // m, of the narrowest place of the widest way, if connected
+    aisle_vec2 place;
+    int32_t id; // of the obstacle there
+} aisle_why;
+
+void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal);
+
+// AISLE_BUSY; AISLE_OK: answered; AISLE_ERR_CAPACITY: the open list is full.
+aisle_status aisle_why_step(aisle_why *self, uint32_t units, uint32_t *spent);
+#endif
