@@ -5,7 +5,7 @@
 //     size_t size = aisle_planner_memsize(&config.limits);
 //     aisle_planner *planner;
 //     aisle_planner_init(block, size, &config, &planner);
-//     aisle_planner_submit(planner, now_us, &(aisle_input){.kind = AISLE_INPUT_QUERY, .query = &query});
+//     aisle_planner_submit(planner, now_us, &(aisle_input){.kind = AISLE_INPUT_QUERY, .as.query = &query});
 //     while (aisle_planner_step(planner, now_us, 1000) == AISLE_BUSY) {
 //         aisle_event event;
 //         while (aisle_planner_next_event(planner, &event)) { send(event.channel, event.bytes, event.size); }
@@ -75,7 +75,7 @@ typedef struct aisle_input {
         const aisle_query_msg *query;
         const aisle_obstacles_msg *obstacles;
         const aisle_command_msg *command;
-    };
+    } as;
 } aisle_input;
 
 typedef enum aisle_event_kind {

@@ -14,32 +14,32 @@ static aisle_input input_of(const aisle_feed *self) {
     aisle_input input = {.kind = self->kind};
     switch (self->kind) {
     case AISLE_INPUT_LAYOUT:
-        input.layout = &self->message.layout;
+        input.as.layout = &self->message.layout;
         break;
     case AISLE_INPUT_LAYOUT_PATCH:
-        input.layout_patch = &self->message.layout_patch;
+        input.as.layout_patch = &self->message.layout_patch;
         break;
     case AISLE_INPUT_GRID:
-        input.grid = &self->message.grid;
+        input.as.grid = &self->message.grid;
         break;
     case AISLE_INPUT_VEHICLE:
-        input.vehicle = &self->message.vehicle;
+        input.as.vehicle = &self->message.vehicle;
         break;
     case AISLE_INPUT_POSE:
-        input.pose = &self->message.pose;
+        input.as.pose = &self->message.pose;
         break;
     case AISLE_INPUT_GOALS:
-        input.goals = &self->message.goals;
+        input.as.goals = &self->message.goals;
         break;
     case AISLE_INPUT_QUERY:
-        input.query = &self->message.query;
+        input.as.query = &self->message.query;
         break;
     case AISLE_INPUT_OBSTACLES:
-        input.obstacles = &self->message.obstacles;
+        input.as.obstacles = &self->message.obstacles;
         break;
     case AISLE_INPUT_COMMAND:
     default:
-        input.command = &self->message.command;
+        input.as.command = &self->message.command;
         break;
     }
     return input;

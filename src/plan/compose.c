@@ -39,7 +39,7 @@ static aisle_corner_rule corner_rule(aisle_compose *self) {
         rule.min_radius = 1.0 / vehicle->curvature_max;
         rule.max_radius = aisle_max(rule.max_radius, rule.min_radius);
     }
-    if (zone < 0.0) {
+    if (zone < 0.0 || self->request.stops) {
         rule.max_radius = 0.0;
         rule.zone = 0.0;
     }

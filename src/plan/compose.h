@@ -26,6 +26,7 @@ typedef struct aisle_compose_request {
     uint32_t leg_count;
     const aisle_goal_msg *start; // heading free if tolerance_theta >= pi
     const aisle_goal_msg *goals; // [leg_count]
+    bool stops;                  // stop and turn in every corner, no arcs
 } aisle_compose_request;
 
 typedef struct aisle_compose {

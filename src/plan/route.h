@@ -19,6 +19,7 @@
 #include "plan/taut.h"
 #include "plan/verify.h"
 #include "plan/why.h"
+#include "wire/codec.h"
 
 #define AISLE_ROUTE_POINTS 2048U // of all legs' seed polylines
 #define AISLE_ROUTE_BYTES 60000U // of an encoded path_t: 54 a waypoint and the head

@@ -88,8 +88,8 @@ static int plan(void) {
     if (aisle_planner_init(block, sizeof memory - 64U, &config, &planner) != AISLE_OK) {
         return -1;
     }
-    const aisle_input inputs[] = {{.kind = AISLE_INPUT_LAYOUT, .layout = &layout},
-                                  {.kind = AISLE_INPUT_QUERY, .query = &query}};
+    const aisle_input inputs[] = {{.kind = AISLE_INPUT_LAYOUT, .as.layout = &layout},
+                                  {.kind = AISLE_INPUT_QUERY, .as.query = &query}};
     for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
         while (aisle_planner_submit(planner, 1000000, &inputs[i]) == AISLE_BUSY) {
             (void)aisle_planner_step(planner, 1000000, 1000);
