@@ -12,6 +12,7 @@ import shapely
 from aisle_tools.check import Obstacles
 
 CELLS = 150_000  # of the lattice looked at
+POWER = 6.0
 STEPS = [(-1, 0, 1.0), (1, 0, 1.0), (0, -1, 1.0), (0, 1, 1.0)]
 STEPS += [(i, j, math.sqrt(2.0)) for i in (-1, 1) for j in (-1, 1)]
 
@@ -52,21 +53,22 @@ class ClearanceField:
 
 
 def narrowest(field: ClearanceField, start: tuple[float, float], goal: tuple[float, float]) -> Place:
-    """Widest way first, shorter way among equals; its narrowest cell."""
+    """The narrowest cell of the way that keeps widest: cost per metre clearance^-POWER, finite within obstacles."""
     parent = _widest_tree(field, field.cell(*start), field.cell(*goal))
     way = [field.cell(*goal)]
-    while parent.get(way[-1]) is not None:
-        way.append(parent[way[-1]])  # type: ignore[arg-type]
+    while parent[way[-1]] is not None:
+        way.append(parent[way[-1]])
     row, column = min(way, key=lambda c: field.gap[c])
     return Place(*field.centre(row, column), float(field.gap[row, column]))
 
 
 def _widest_tree(field: ClearanceField, begin: tuple[int, int], end: tuple[int, int]) -> dict:
-    gap, (height, width) = field.gap, field.gap.shape
+    cost = np.maximum(field.gap, 0.25 * field.step) ** -POWER
+    height, width = cost.shape
     done: dict = {}
-    queue: list = [(-float(gap[begin]), 0.0, begin, None)]
+    queue: list = [(0.0, begin, None)]
     while queue:
-        wide, travel, cell, origin = heapq.heappop(queue)
+        spent, cell, origin = heapq.heappop(queue)
         if cell in done:
             continue
         done[cell] = origin
@@ -75,5 +77,5 @@ def _widest_tree(field: ClearanceField, begin: tuple[int, int], end: tuple[int, 
         for di, dj, d in STEPS:
             i, j = cell[0] + di, cell[1] + dj
             if 0 <= i < height and 0 <= j < width and (i, j) not in done:
-                heapq.heappush(queue, (max(wide, -float(gap[i, j])), travel + d, (i, j), cell))
+                heapq.heappush(queue, (spent + d * float(cost[i, j]), (i, j), cell))
     return done

@@ -77,8 +77,9 @@ def what(cause: int, ident: int) -> str:
     return f"id {ident}"
 
 
-# Counters of diag_t: aisle_counter of planner.h by number.
-COUNTERS: dict[int, str] = dict(
+# timer_id and counter_id of diag_t: of the planner from 0, of the daemon from 100.
+TIMERS = dict(enumerate(["slice", "request", "decode", "publish"]))
+COUNTERS = dict(
     enumerate(
         [
             "inputs",
@@ -100,4 +101,21 @@ COUNTERS: dict[int, str] = dict(
         ]
     )
 )
-TIMERS: dict[int, str] = {}
+COUNTERS.update(
+    enumerate(
+        [
+            "received",
+            "replaced",
+            "oversize",
+            "dropped",
+            "flooded",
+            "malformed",
+            "over limit",
+            "published",
+            "publish failed",
+            "clock jumps",
+            "queue bytes max",
+        ],
+        start=100,
+    )
+)
