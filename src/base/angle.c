@@ -41,15 +41,17 @@ void aisle_sincos(double angle, double *sine, double *cosine) {
         *sine = *cosine = (double)NAN;
         return;
     }
-    const double quarters = floor(angle * QUARTERS_PER_RAD + 0.5);
-    const double r = ((angle - quarters * QUARTER_HI) - quarters * QUARTER_MID) - quarters * QUARTER_LO;
+    const double x = fabs(angle); // so that both signs take the same way
+    const double quarters = floor(x * QUARTERS_PER_RAD + 0.5);
+    const double r = ((x - quarters * QUARTER_HI) - quarters * QUARTER_MID) - quarters * QUARTER_LO;
     const double z = r * r;
     const double s = sine_near(r, z);
     const double c = cosine_near(z);
-    const int32_t quadrant = (int32_t)quarters & 3; // two's complement: -1 is 3
-    const double a = (quadrant & 1) != 0 ? c : s;
-    const double b = (quadrant & 1) != 0 ? s : c;
-    *sine = (quadrant & 2) != 0 ? -a : a;
+    const uint32_t quadrant = (uint32_t)quarters & 3U;
+    const bool swapped = (quadrant & 1U) != 0;
+    const double a = swapped ? c : s;
+    const double b = swapped ? s : c;
+    *sine = (quadrant >= 2) != (angle < 0.0) ? -a : a;
     *cosine = quadrant == 1 || quadrant == 2 ? -b : b;
 }
 

@@ -56,9 +56,11 @@ static inline double aisle_clamp(double x, double lo, double hi) {
     return x < lo ? lo : (x > hi ? hi : x);
 }
 
+// Do they share a point? Touching is sharing. Both are taken to be not empty.
 static inline bool aisle_aabb_overlap(aisle_aabb a, aisle_aabb b) {
     return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y;
 }
+// Every side moved outwards.
 static inline aisle_aabb aisle_aabb_grow(aisle_aabb a, double by) {
     return (aisle_aabb){{a.lo.x - by, a.lo.y - by}, {a.hi.x + by, a.hi.y + by}};
 }
