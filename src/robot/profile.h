@@ -1,37 +1,76 @@
 // profile.h - speeds, times and energy along a path whose geometry stands. Level 3.
 //
-// Pieces as waypoint_t says: piece i joins waypoint i-1 to i and is a straight line, an arc (curvature of waypoint i), or, if
-// waypoint i-1 carries TURN_IN_PLACE, a turn on the spot. REVERSE on waypoint i: piece i is driven backwards.
-// Speed limit of a piece: v_max (v_reverse_max if REVERSE); sqrt(lateral_a_max / |curvature|); omega_max * length / |turn|;
-// creep_speed if its clearance (waypoint i) is below creep_clearance; SPEED_LIMIT zones the footprint touches on it. Speed at a
-// waypoint: at most the limit of both pieces, 0 at the first and last, at STOP, and on both ends of a turn; then a forward and a backward
-// pass with a_max and d_max (v1^2 <= v0^2 + 2 a length). Between waypoints the acceleration is constant: a = (v1^2 - v0^2) / (2 length).
-// A piece between two stops gets through because speed may peak at its middle only if it is split: the caller splits long pieces; a
-// piece whose both ends are at rest is given as "v = 0 at both ends" with duration of the triangular (trapezoidal) profile under its limit, and a = 0.
-// Turn on the spot by angle b: trapezoid under omega_max and alpha_max. dwell: added after STOP at a goal by the caller through `dwell`.
-// Energy (J): rolling m g c L / eff + gain of kinetic energy m (v1^2 - v0^2) / 2 / eff where positive + idle power * time
-// (+ turn on the spot: rolling over outer_radius * |turn|). Ours; PAPERS' third and fourth give trends only.
-// Memory: none. Time: O(n), zones O(n * zones near).
+// Pieces as waypoint_t says: piece i joins waypoint i-1 to i and is a straight line, an arc (curvature of waypoint i),
+// or, if waypoint i-1 carries TURN_IN_PLACE, a turn on the spot. REVERSE on waypoint i: piece i is driven backwards.
+//
+// Limit of a piece, the least of: v_max (v_reverse_max if REVERSE); sqrt(lateral_a_max / |curvature|); omega_max *
+// length / |turn|; creep_speed if its clearance (waypoint i) is below creep_clearance; the value of every SPEED_LIMIT
+// zone it may touch. "May touch": the piece is cut so that no body point strays more than 0.02 m from the straight way
+// between its places at the ends of a cut (at most 64 cuts), and the hull of the footprint at both ends, grown by that
+// stray, is tested; so a zone farther away than 0.02 m (more only past 64 cuts) does not slow the vehicle and one that
+// is touched always does. Other kinds of polygons are not looked at.
+//
+// Speed at a waypoint: at most the limits of both pieces; 0 at the first and last, at STOP, at both ends of a turn, and
+// where REVERSE begins or ends; then the greatest speeds with v1^2 <= v0^2 + 2 a_max L and v0^2 <= v1^2 + 2 d_max L on
+// every piece (one pass forwards, one backwards; the two-pass method of Bobrow, Dubowsky and Gibson 1985,
+// doi:10.1177/027836498500400301, with constant limits on each piece). Between waypoints the acceleration is constant:
+// with v0, v1 of the two waypoints
+//     a = (v1^2 - v0^2) / (2 L),  dt = 2 L / (v0 + v1).
+// Waypoint i holds v at it and a of the piece that ends there (0 at the first).
+// A piece at rest at both ends is driven as a trapezoid (triangle) under its limit with a_max and d_max; it is written
+// as v = 0 at both ends and a = 0, dt the duration of the trapezoid. A long piece with one slow end is driven at the
+// mean of both speeds: who wants it faster splits it. Turn on the spot by angle b: trapezoid (triangle) under omega_max
+// and alpha_max, v = 0 at both ends, a = 0. alpha_max is not asked elsewhere: arcs meet lines with a jump of curvature,
+// as all line-and-arc paths do.
+//
+// Energy (J): (rolling m g c L + gain of kinetic energy m (v1^2 - v0^2) / 2 where positive, m vp^2 / 2 with the peak vp
+// where both ends are at rest) / efficiency + idle power * duration; a turn: rolling over outer_radius * |turn|. g
+// = 9.80665 m/s2. Ours; PAPERS' third and fourth give trends only.
+//
+// Rounding: all sums are double; s and a are the nearest floats. v is rounded down before it is used further, so the
+// rules on v and a above hold for the floats as they stand (to 1e-12 relative). t is rounded up, each from the float
+// before it, so that dt >= 2 L / (v0 + v1) holds for the floats and dt exceeds it by at most one step of float at t
+// (0.98 ms at most, since longer than AISLE_PROFILE_DURATION_MAX is refused), or is 1 ms where that is more.
+//
+// Memory: none (s and a of the waypoints serve as scratch). Time: O(n), with zones O(n * zones near * cuts); 64 * 64 a
+// gap at most.
 #ifndef AISLE_ROBOT_PROFILE_H
 #define AISLE_ROBOT_PROFILE_H
 
 #include "robot/vehicle.h"
 #include "world/layout.h"
 
+#include <stdint.h>
+
+#define AISLE_PROFILE_DURATION_MAX 16384.0 // s (4.5 h): float tells milliseconds apart up to here
+#define AISLE_PROFILE_PIECE_MIN 1e-9       // m; a shorter piece is none
+#define AISLE_PROFILE_TIME_STEP 1e-3       // s, least time between waypoints
+
 typedef struct aisle_profile_sum {
     double length;   // m
-    double duration; // s
+    double duration; // s, = t of the last waypoint
     double energy;   // J
-    double risk;     // mean of max(1 - clearance / creep_clearance, 0) over the length, by pieces
+    double risk; // mean of max(1 - clearance / creep_clearance, 0) over the length, by pieces; 0 if there is no length
 } aisle_profile_sum;
 
-// Reads x, y, theta, curvature, clearance, flags; writes s, t, v, a of w[n], n >= 1. dwell[n] (s, may be NULL): rest after reaching
-// waypoint i before going on. layout may be NULL: no zones. All times strictly rising (at least 1 ms apart, as float too).
-// A short piece between equal positions without TURN_IN_PLACE is a fault of the caller: AISLE_ERR_ARG.
-aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w, uint32_t n,
-                                const float *dwell, aisle_profile_sum *sum);
+// Reads x, y, theta, curvature, clearance, flags; writes s, t, v, a of w[n], n >= 1. dwell[n] (s, may be NULL): rest
+// after reaching waypoint i before going on; t is the time of arrival, so it delays the waypoints behind, and on the
+// last one counts for nothing. layout may be NULL: no zones. All times strictly rising (at least 1 ms apart, as float
+// too).
+//
+// AISLE_ERR_ARG, nothing changed: NULL, n = 0, a layout not in force; a number read that is not finite, |x| or |y|
+// above AISLE_SHAPE_COORD_MAX, |theta| above AISLE_ANGLE_MAX, a negative clearance (curvature and clearance of w[0] are
+// not read); a piece shorter than AISLE_PROFILE_PIECE_MIN without TURN_IN_PLACE, or one not shorter with it; an arc
+// whose chord is longer than its diameter (by more than 1e-6 relative); a dwell that is negative, not finite, or not 0
+// at a waypoint where the vehicle does not rest. AISLE_ERR_CAPACITY: lasts longer than AISLE_PROFILE_DURATION_MAX; s,
+// t, v, a are undefined then, all else is unchanged.
+aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
+                                uint32_t n, const float *dwell, aisle_profile_sum *sum);
 
-// Geometry of piece i in [1, n): length (m) of line or arc; signed turn (rad) of theta, the short way.
+// Length (m) of the line or the minor arc from `from` to `to`, 0 if `from` carries TURN_IN_PLACE. A chord longer than
+// the diameter is taken as the diameter. Relative error at most 1e-12. O(1).
 double aisle_piece_length(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to);
+
+// Signed turn (rad) of theta, the short way, in (-pi, pi]. O(1).
 double aisle_piece_turn(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to);
 #endif

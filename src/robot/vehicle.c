@@ -108,8 +108,7 @@ static aisle_status take_footprint(const aisle_vehicle_msg *msg, aisle_vehicle *
     if (count < 0 || count == 1 || count == 2 || count > AISLE_SHAPE_VERTICES_MAX) {
         return refuse(why, MEMBER_NUM_VERTICES, count);
     }
-    const bool radius_is_fit =
-        msg->footprint_radius >= 0.0F && (double)msg->footprint_radius <= AISLE_VEHICLE_VALUE_MAX;
+    const bool radius_is_fit = isfinite(msg->footprint_radius) && msg->footprint_radius >= 0.0F;
     self->radius = radius_is_fit ? (double)msg->footprint_radius : 0.0;
     take_vertices(msg, self);
     if (self->n > 1 && !aisle_convex_is_valid(self->footprint, self->n, AISLE_SHAPE_VERTICES_MAX)) {

@@ -1,0 +1,313 @@
+#include "robot/profile.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define GRAVITY 9.80665   // m/s2
+#define CHORD_EXCESS 1e-6 // relative: curvature travels as float
+#define STRAY_MAX 0.02    // m, see the header
+#define CUTS_MAX 64.0
+
+typedef struct piece { // between two waypoints
+    const aisle_waypoint_msg *from, *to;
+    double length; // m; 0 for a turn on the spot
+    double turn;   // rad
+} piece;
+
+// ---- rounding to float in a chosen direction, for x >= 0 far below FLT_MAX
+
+static float next_float(float x, int step) { // x > 0, or x = 0 and step > 0
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = step > 0 ? bits + 1U : bits - 1U; // floats of one sign are ordered as their bits
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static float float_below(double x) {
+    const float nearest = (float)x;
+    return (double)nearest > x ? next_float(nearest, -1) : nearest;
+}
+
+static float float_above(double x) {
+    const float nearest = (float)x;
+    return (double)nearest < x ? next_float(nearest, 1) : nearest;
+}
+
+// ---- geometry of pieces
+
+static bool has(const aisle_waypoint_msg *w, int flag) {
+    return (w->flags & flag) != 0;
+}
+
+static double chord_of(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    return aisle_vec2_distance(aisle_vec2_of(from->x, from->y), aisle_vec2_of(to->x, to->y));
+}
+
+// Half the angle of the minor arc, signed as the curvature: asin(k c / 2).
+static double half_angle(double chord, double curvature) {
+    const double sine = aisle_clamp(0.5 * curvature * chord, -1.0, 1.0);
+    return aisle_atan2(sine, sqrt(1.0 - sine * sine));
+}
+
+double aisle_piece_length(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    if (has(from, AISLE_WAYPOINT_TURN_IN_PLACE)) {
+        return 0.0;
+    }
+    const double chord = chord_of(from, to);
+    const double curvature = (double)to->curvature;
+    const double sine = fabs(0.5 * curvature * chord);
+    if (sine < 0.01) { // asin(s) / s; the next term is below 5e-14, and a curvature of 0 needs no case of its own
+        const double s2 = sine * sine;
+        return chord * (1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0)));
+    }
+    return fabs(2.0 * half_angle(chord, curvature) / curvature);
+}
+
+double aisle_piece_turn(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    return aisle_angle_difference(from->theta, to->theta);
+}
+
+static piece piece_at(const aisle_waypoint_msg *w, uint32_t i) {
+    const aisle_waypoint_msg *from = &w[i - 1], *to = &w[i];
+    return (piece){from, to, aisle_piece_length(from, to), aisle_piece_turn(from, to)};
+}
+
+static bool is_turn(const piece *p) {
+    return has(p->from, AISLE_WAYPOINT_TURN_IN_PLACE);
+}
+
+// The pose a part u in [0, 1] of the way along. On an arc of half angle h the point at u lies from the start at the
+// chord's direction turned by -h (1 - u), at sin(h u) / sin(h) of the chord.
+static aisle_pose2 pose_along(const piece *p, double u) {
+    const aisle_vec2 start = {p->from->x, p->from->y};
+    const aisle_vec2 chord = aisle_vec2_sub(aisle_vec2_of(p->to->x, p->to->y), start);
+    const double h = half_angle(aisle_vec2_length(chord), (double)p->to->curvature);
+    double sine, cosine, sine_hu, sine_h, unused;
+    aisle_sincos(-h * (1.0 - u), &sine, &cosine);
+    aisle_sincos(h * u, &sine_hu, &unused);
+    aisle_sincos(h, &sine_h, &unused);
+    // Below 1e-3 the quotient by its series: the sines' absolute error would show.
+    const double part = fabs(h) < 1e-3 ? u * (1.0 + h * h * (1.0 - u * u) / 6.0) : sine_hu / sine_h;
+    const aisle_vec2 turned = {chord.x * cosine - chord.y * sine, chord.x * sine + chord.y * cosine};
+    const aisle_vec2 at = aisle_vec2_add(start, aisle_vec2_scale(turned, part));
+    return (aisle_pose2){at.x, at.y, p->from->theta + u * p->turn};
+}
+
+// ---- what is fit to be worked on
+
+static bool numbers_are_fit(const aisle_waypoint_msg *w, bool ends_a_piece) {
+    return fabs(w->x) <= AISLE_SHAPE_COORD_MAX && fabs(w->y) <= AISLE_SHAPE_COORD_MAX &&
+           fabs(w->theta) <= AISLE_ANGLE_MAX &&
+           (!ends_a_piece || (isfinite(w->curvature) && isfinite(w->clearance) && w->clearance >= 0.0F));
+}
+
+static bool piece_is_fit(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    const double chord = chord_of(from, to);
+    if (has(from, AISLE_WAYPOINT_TURN_IN_PLACE)) {
+        return chord < AISLE_PROFILE_PIECE_MIN;
+    }
+    return chord >= AISLE_PROFILE_PIECE_MIN && fabs(0.5 * (double)to->curvature * chord) <= 1.0 + CHORD_EXCESS;
+}
+
+// At the ends, at STOP, before and after a turn, and where the vehicle changes between forwards and backwards.
+static bool rests_at(const aisle_waypoint_msg *w, uint32_t n, uint32_t i) {
+    return i == 0 || i == n - 1 || has(&w[i], AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE) ||
+           has(&w[i - 1], AISLE_WAYPOINT_TURN_IN_PLACE) ||
+           has(&w[i], AISLE_WAYPOINT_REVERSE) != has(&w[i + 1], AISLE_WAYPOINT_REVERSE);
+}
+
+static bool path_is_fit(const aisle_waypoint_msg *w, uint32_t n, const float *dwell) {
+    for (uint32_t i = 0; i < n; i++) {
+        if (!numbers_are_fit(&w[i], i > 0) || (i > 0 && !piece_is_fit(&w[i - 1], &w[i]))) {
+            return false;
+        }
+        if (dwell != NULL && (!isfinite(dwell[i]) || dwell[i] < 0.0F || (dwell[i] > 0.0F && !rests_at(w, n, i)))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// ---- limits of pieces
+
+// How far a body point may stray from the straight way between its ends: sagittas of the origin's arc and of the
+// rotation, |k| L^2 / 8 + r b^2 / 8 (a point's second derivative along the piece is at most |k| L^2 + r b^2).
+static double stray_of(const aisle_vehicle *vehicle, const piece *p) {
+    const double reach = vehicle->outer_radius - vehicle->radius; // the rounding turns with its centre
+    return (fabs((double)p->to->curvature) * p->length * p->length + reach * p->turn * p->turn) / 8.0;
+}
+
+static aisle_aabb box_of(const aisle_vehicle *vehicle, const piece *p) {
+    const double grow = vehicle->outer_radius + fabs((double)p->to->curvature) * p->length * p->length / 8.0;
+    const aisle_aabb ends = {{aisle_min(p->from->x, p->to->x), aisle_min(p->from->y, p->to->y)},
+                             {aisle_max(p->from->x, p->to->x), aisle_max(p->from->y, p->to->y)}};
+    return aisle_aabb_grow(ends, grow);
+}
+
+static bool may_touch(const aisle_vehicle *vehicle, const piece *p, const aisle_convex *zone) {
+    const double stray = stray_of(vehicle, p);
+    const double cuts = aisle_min(floor(sqrt(stray / STRAY_MAX)) + 1.0, CUTS_MAX);
+    for (double cut = 0.0; cut < cuts; cut += 1.0) {
+        aisle_vec2 places[2 * AISLE_SHAPE_VERTICES_MAX], hull[2 * AISLE_SHAPE_VERTICES_MAX];
+        (void)aisle_vehicle_place(vehicle, pose_along(p, cut / cuts), 0.0, places);
+        (void)aisle_vehicle_place(vehicle, pose_along(p, (cut + 1.0) / cuts), 0.0, places + vehicle->n);
+        const uint32_t size = aisle_convex_hull(places, 2U * vehicle->n, hull);
+        const aisle_convex swept = {hull, size, vehicle->radius + stray / (cuts * cuts)};
+        if (!(aisle_convex_gap(&swept, zone) > 0.0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static double zone_limit(const aisle_vehicle *vehicle, const aisle_layout *layout, const piece *p, double limit) {
+    const aisle_zone *zone;
+    for (aisle_layout_walk walk = aisle_layout_walk_over(layout, box_of(vehicle, p));
+         aisle_layout_walk_next(&walk, &zone);) {
+        if (zone->kind == AISLE_POLYGON_SPEED_LIMIT && (double)zone->value < limit) {
+            const aisle_convex shape = aisle_layout_zone_shape(layout, zone);
+            limit = may_touch(vehicle, p, &shape) ? aisle_max((double)zone->value, 0.0) : limit;
+        }
+    }
+    return limit;
+}
+
+static double piece_limit(const aisle_vehicle *vehicle, const aisle_layout *layout, const piece *p) {
+    if (is_turn(p)) {
+        return 0.0;
+    }
+    const double curvature = fabs((double)p->to->curvature);
+    const double turn = fabs(p->turn);
+    double limit = has(p->to, AISLE_WAYPOINT_REVERSE) ? vehicle->v_reverse_max : vehicle->v_max;
+    if (limit * limit * curvature > vehicle->lateral_a_max) {
+        limit = sqrt(vehicle->lateral_a_max / curvature);
+    }
+    if (limit * turn > vehicle->omega_max * p->length) {
+        limit = vehicle->omega_max * p->length / turn;
+    }
+    if ((double)p->to->clearance < vehicle->creep_clearance) {
+        limit = aisle_min(limit, vehicle->creep_speed);
+    }
+    return layout == NULL ? limit : zone_limit(vehicle, layout, p, limit);
+}
+
+// Until the last pass s holds the length and a the limit of the piece that ends here, both rounded down.
+static void bound_pieces(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w, uint32_t n) {
+    for (uint32_t i = 1; i < n; i++) {
+        const piece p = piece_at(w, i);
+        w[i].s = float_below(p.length);
+        w[i].a = float_below(piece_limit(vehicle, layout, &p));
+    }
+}
+
+// ---- speeds
+
+static void bound_waypoints(aisle_waypoint_msg *w, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) {
+        w[i].v = 0.0F;
+        if (!rests_at(w, n, i)) {
+            w[i].v = w[i].a < w[i + 1].a ? w[i].a : w[i + 1].a;
+        }
+    }
+}
+
+// Lowers v to what is reached from v0 with this acceleration over this length.
+static void lower(float *v, float v0, double acceleration, float length) {
+    const double reached = sqrt((double)v0 * (double)v0 + 2.0 * acceleration * (double)length);
+    if (reached < (double)*v) {
+        *v = float_below(reached);
+    }
+}
+
+static void bound_accelerations(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n) {
+    for (uint32_t i = 1; i < n; i++) {
+        lower(&w[i].v, w[i - 1].v, vehicle->a_max, w[i].s);
+    }
+    for (uint32_t i = n - 1; i > 1; i--) { // w[0] rests as it is
+        lower(&w[i - 1].v, w[i].v, vehicle->d_max, w[i].s);
+    }
+}
+
+// ---- times and sums
+
+// From rest to rest over `way` at most at `most`: up with `up`, down with `down`. *peak: the greatest speed.
+static double rest_to_rest(double way, double most, double up, double down, double *peak) {
+    const double triangle = sqrt(2.0 * way * up * down / (up + down));
+    *peak = aisle_min(triangle, most);
+    const double ramps = 0.5 * *peak * *peak * (1.0 / up + 1.0 / down); // way spent in them
+    const double cruise = triangle > most ? (way - ramps) / most : 0.0;
+    return *peak / up + *peak / down + cruise;
+}
+
+// Duration of piece p under `limit`; *work: what it takes at the wheels, J.
+static double drive(const aisle_vehicle *vehicle, const piece *p, double limit, double *work) {
+    const double v0 = (double)p->from->v, v1 = (double)p->to->v;
+    const double rolling = vehicle->mass * GRAVITY * vehicle->rolling_resistance;
+    double peak;
+    if (is_turn(p)) {
+        const double turn = fabs(p->turn);
+        *work = rolling * vehicle->outer_radius * turn;
+        return rest_to_rest(turn, vehicle->omega_max, vehicle->alpha_max, vehicle->alpha_max, &peak);
+    }
+    if (v0 + v1 > 0.0) {
+        *work = rolling * p->length + 0.5 * vehicle->mass * aisle_max(0.0, v1 * v1 - v0 * v0);
+        return 2.0 * p->length / (v0 + v1);
+    }
+    const double duration = rest_to_rest(p->length, limit, vehicle->a_max, vehicle->d_max, &peak);
+    *work = rolling * p->length + 0.5 * vehicle->mass * peak * peak;
+    return duration;
+}
+
+static double acceleration_of(const piece *p) {
+    const double v0 = (double)p->from->v, v1 = (double)p->to->v;
+    return is_turn(p) ? 0.0 : (v1 * v1 - v0 * v0) / (2.0 * p->length);
+}
+
+static double risk_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *to) {
+    return aisle_max(1.0 - (double)to->clearance / vehicle->creep_clearance, 0.0);
+}
+
+static aisle_status lay_out(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n, const float *dwell,
+                            aisle_profile_sum *sum) {
+    double length = 0.0, work_total = 0.0, risk = 0.0;
+    w[0].s = w[0].t = w[0].a = 0.0F;
+    for (uint32_t i = 1; i < n; i++) {
+        const piece p = piece_at(w, i);
+        double work;
+        const double rest = dwell == NULL ? 0.0 : (double)dwell[i - 1];
+        const double duration = rest + aisle_max(drive(vehicle, &p, (double)w[i].a, &work), AISLE_PROFILE_TIME_STEP);
+        const double arrival = (double)w[i - 1].t + duration;
+        if (!(arrival <= AISLE_PROFILE_DURATION_MAX)) { // a limit rounded down to 0 ends here, too
+            return AISLE_ERR_CAPACITY;
+        }
+        length += p.length;
+        work_total += work;
+        risk += risk_of(vehicle, p.to) * p.length;
+        w[i].s = (float)length;
+        w[i].t = float_above(arrival);
+        w[i].a = (float)acceleration_of(&p);
+    }
+    sum->length = length;
+    sum->duration = (double)w[n - 1].t;
+    sum->energy = work_total / vehicle->drive_efficiency + vehicle->idle_power * sum->duration;
+    sum->risk = length > 0.0 ? risk / length : 0.0;
+    return AISLE_OK;
+}
+
+aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
+                                uint32_t n, const float *dwell, aisle_profile_sum *sum) {
+    if (vehicle == NULL || w == NULL || sum == NULL || n == 0 || !path_is_fit(w, n, dwell) ||
+        (layout != NULL && !aisle_layout_is_in_force(layout))) {
+        return AISLE_ERR_ARG;
+    }
+    AISLE_ASSERT(vehicle->v_max > 0.0 && vehicle->v_reverse_max > 0.0 && vehicle->creep_speed > 0.0);
+    AISLE_ASSERT(vehicle->a_max > 0.0 && vehicle->d_max > 0.0 && vehicle->omega_max > 0.0 && vehicle->alpha_max > 0.0);
+    bound_pieces(vehicle, layout, w, n);
+    bound_waypoints(w, n);
+    bound_accelerations(vehicle, w, n);
+    return lay_out(vehicle, w, n, dwell, sum);
+}

@@ -1,0 +1,805 @@
+#include "robot/profile.h" // first: proves that the header stands alone
+
+#include "base/angle.h"
+#include "base/rng.h"
+#include "unity.h"
+
+#include <float.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { CAPACITY = 1024 };
+
+static aisle_vehicle vehicle;
+static aisle_waypoint_msg path[CAPACITY + 1]; // one canary behind
+static float dwell[CAPACITY];
+static uint32_t count;
+static aisle_profile_sum sum;
+
+static void set_vehicle(const aisle_vehicle_msg *msg) {
+    aisle_refusal why;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_vehicle_from_msg(msg, &vehicle, &why));
+}
+
+void setUp(void) {
+    static const aisle_vehicle_msg usual;
+    set_vehicle(&usual);
+    memset(path, 0xA5, sizeof path); // what fill() writes must not depend on what was there
+    memset(dwell, 0, sizeof dwell);
+    memset(&sum, 0, sizeof sum);
+    count = 0;
+}
+void tearDown(void) {
+    const aisle_waypoint_msg *canary = &path[CAPACITY];
+    for (size_t i = 0; i < sizeof *canary; i++) {
+        TEST_ASSERT_EQUAL_HEX8(0xA5, ((const uint8_t *)canary)[i]);
+    }
+}
+
+// ---- building paths
+
+static aisle_waypoint_msg *add(double x, double y, double theta) {
+    TEST_ASSERT_LESS_THAN_UINT32(CAPACITY, count);
+    aisle_waypoint_msg *w = &path[count];
+    w->x = x;
+    w->y = y;
+    w->theta = theta;
+    w->curvature = 0.0F;
+    w->clearance = 10.0F;
+    w->flags = 0;
+    w->goal_id = 0;
+    count++;
+    return w;
+}
+
+// A straight line along x from the last waypoint in pieces of `step`.
+static void add_line(double length, double step) {
+    const double x = path[count - 1].x;
+    for (int i = 1; i * step < length + 0.5 * step; i++) {
+        (void)add(x + i * step, path[count - 1].y, path[count - 1].theta);
+    }
+}
+
+static void set_flag(aisle_waypoint_msg *w, int flag) {
+    w->flags = (int16_t)(w->flags | flag);
+}
+
+static void fill(void) {
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill(&vehicle, NULL, path, count, dwell, &sum));
+}
+
+// ---- the judge: rules of the header again, in long double, from the floats as they stand
+
+static long double ld(double x) {
+    return (long double)x;
+}
+static long double lf(float x) {
+    return (long double)x;
+}
+static bool flagged(uint32_t i, int flag) {
+    return (path[i].flags & flag) != 0;
+}
+static bool turning(uint32_t i) {
+    return flagged(i - 1, AISLE_WAYPOINT_TURN_IN_PLACE);
+} // piece i
+
+static long double judge_length(uint32_t i) {
+    const long double chord = hypotl(ld(path[i].x) - ld(path[i - 1].x), ld(path[i].y) - ld(path[i - 1].y));
+    const long double curvature = fabsl(lf(path[i].curvature));
+    if (turning(i)) {
+        return 0.0L;
+    }
+    return curvature * chord < 1e-9L ? chord : 2.0L * asinl(fminl(1.0L, 0.5L * curvature * chord)) / curvature;
+}
+
+static long double judge_turn(uint32_t i) {
+    return fabsl(remainderl(ld(path[i].theta) - ld(path[i - 1].theta), 2.0L * acosl(-1.0L)));
+}
+
+static bool judge_rest(uint32_t i) {
+    if (i == 0 || i + 1 == count) {
+        return true;
+    }
+    const bool stop = flagged(i, AISLE_WAYPOINT_STOP), turn = turning(i) || turning(i + 1);
+    return stop || turn || flagged(i, AISLE_WAYPOINT_REVERSE) != flagged(i + 1, AISLE_WAYPOINT_REVERSE);
+}
+
+typedef enum cause { V_MAX, REVERSE, LATERAL, OMEGA, CREEP, UP, DOWN, REST, AT_REST_BOTH, SHORTEST_TIME, CAUSES } cause;
+static uint32_t hits[CAUSES];
+
+static long double judge_limit(uint32_t i, cause *why) { // of piece i, zones aside
+    const long double curvature = fabsl(lf(path[i].curvature)), turn = judge_turn(i), length = judge_length(i);
+    const bool back = flagged(i, AISLE_WAYPOINT_REVERSE);
+    long double limit = ld(back ? vehicle.v_reverse_max : vehicle.v_max);
+    *why = back ? REVERSE : V_MAX;
+    if (curvature > 0.0L && sqrtl(ld(vehicle.lateral_a_max) / curvature) < limit) {
+        limit = sqrtl(ld(vehicle.lateral_a_max) / curvature);
+        *why = LATERAL;
+    }
+    if (turn > 0.0L && ld(vehicle.omega_max) * length / turn < limit) {
+        limit = ld(vehicle.omega_max) * length / turn;
+        *why = OMEGA;
+    }
+    if (ld((double)path[i].clearance) < ld(vehicle.creep_clearance) && ld(vehicle.creep_speed) < limit) {
+        limit = ld(vehicle.creep_speed);
+        *why = CREEP;
+    }
+    return limit;
+}
+
+static long double trapezoid(long double way, long double most, long double up, long double down, long double *peak) {
+    const long double way_up = most * most / (2.0L * up), way_down = most * most / (2.0L * down);
+    if (way_up + way_down <= way) {
+        *peak = most;
+        return most / up + most / down + (way - way_up - way_down) / most;
+    }
+    *peak = sqrtl(2.0L * way / (1.0L / up + 1.0L / down));
+    return *peak / up + *peak / down;
+}
+
+// No speed breaks a rule, and none could be raised alone: it stands at a limit or at what a neighbour allows. Since
+// such chains end at a limit, no other speeds that keep the rules are higher anywhere.
+static void judge_speed(uint32_t i) {
+    const long double v = lf(path[i].v);
+    TEST_ASSERT_TRUE(path[i].v >= 0.0F);
+    if (judge_rest(i)) {
+        TEST_ASSERT_TRUE(path[i].v <= 0.0F);
+        hits[REST]++;
+        return;
+    }
+    cause why[2];
+    const long double most[4] = {
+        judge_limit(i, &why[0]), judge_limit(i + 1, &why[1]),
+        sqrtl(lf(path[i - 1].v) * lf(path[i - 1].v) + 2.0L * ld(vehicle.a_max) * judge_length(i)),
+        sqrtl(lf(path[i + 1].v) * lf(path[i + 1].v) + 2.0L * ld(vehicle.d_max) * judge_length(i + 1))};
+    const cause of[4] = {why[0], why[1], UP, DOWN};
+    int least = 0;
+    for (int k = 0; k < 4; k++) {
+        TEST_ASSERT_TRUE(v <= most[k] * (1.0L + 1e-12L));
+        least = most[k] < most[least] ? k : least;
+    }
+    TEST_ASSERT_TRUE(v >= most[least] * (1.0L - 3e-7L));
+    hits[of[least]]++;
+}
+
+static long double judge_duration(uint32_t i, long double *work) { // of piece i from its speeds
+    const long double v0 = lf(path[i - 1].v), v1 = lf(path[i].v), length = judge_length(i), turn = judge_turn(i);
+    const long double weight = ld(vehicle.mass) * 9.80665L * ld(vehicle.rolling_resistance);
+    long double peak;
+    cause unused;
+    if (turning(i)) {
+        *work = weight * ld(vehicle.outer_radius) * turn;
+        return trapezoid(turn, ld(vehicle.omega_max), ld(vehicle.alpha_max), ld(vehicle.alpha_max), &peak);
+    }
+    *work = weight * length;
+    if (v0 + v1 > 0.0L) {
+        *work += v1 > v0 ? 0.5L * ld(vehicle.mass) * (v1 * v1 - v0 * v0) : 0.0L;
+        return 2.0L * length / (v0 + v1);
+    }
+    hits[AT_REST_BOTH]++;
+    const long double t = trapezoid(length, judge_limit(i, &unused), ld(vehicle.a_max), ld(vehicle.d_max), &peak);
+    *work += 0.5L * ld(vehicle.mass) * peak * peak;
+    return t;
+}
+
+static long double judge_piece(uint32_t i) { // returns the work of piece i
+    long double work;
+    const long double needed = judge_duration(i, &work), length = judge_length(i);
+    const long double dt = lf(path[i].t) - lf(path[i - 1].t), rest = lf(dwell[i - 1]);
+    const long double step = lf(nextafterf(path[i].t, INFINITY)) - lf(path[i].t);
+    TEST_ASSERT_TRUE(dt >= 0.001L * (1.0L - 1e-9L));
+    TEST_ASSERT_TRUE(dt >= rest + needed * (1.0L - 1e-9L) - 1e-12L);
+    TEST_ASSERT_TRUE(dt <= rest + fmaxl(needed * (1.0L + 1.2e-7L), 0.001L) + step + 1e-12L);
+    hits[SHORTEST_TIME] += needed < 0.001L ? 1U : 0U;
+    const long double v0 = lf(path[i - 1].v), v1 = lf(path[i].v), a = lf(path[i].a);
+    TEST_ASSERT_TRUE(a <= ld(vehicle.a_max) && a >= -ld(vehicle.d_max));
+    const long double exact = turning(i) ? 0.0L : (v1 * v1 - v0 * v0) / (2.0L * length);
+    TEST_ASSERT_TRUE(fabsl(a - exact) <= 1.2e-7L * fabsl(exact) + 1e-30L);
+    return work;
+}
+
+// Everything about a filled path; returns its duration.
+static long double judge_path(void) {
+    long double length = 0.0L, work = 0.0L, risk = 0.0L;
+    TEST_ASSERT_TRUE(path[0].s <= 0.0F && path[0].t <= 0.0F && path[0].s >= 0.0F && path[0].t >= 0.0F);
+    TEST_ASSERT_TRUE(path[0].a <= 0.0F && path[0].a >= 0.0F);
+    for (uint32_t i = 0; i < count; i++) {
+        judge_speed(i);
+        if (i > 0) {
+            work += judge_piece(i);
+            length += judge_length(i);
+            risk += judge_length(i) * fmaxl(0.0L, 1.0L - lf(path[i].clearance) / ld(vehicle.creep_clearance));
+            TEST_ASSERT_TRUE(fabsl(lf(path[i].s) - length) <= 6.1e-8L * length + 1e-12L);
+            TEST_ASSERT_TRUE(path[i].s >= path[i - 1].s && path[i].t > path[i - 1].t);
+        }
+    }
+    const long double duration = lf(path[count - 1].t);
+    const long double energy = work / ld(vehicle.drive_efficiency) + ld(vehicle.idle_power) * duration;
+    TEST_ASSERT_TRUE(fabsl(ld(sum.length) - length) <= 1e-11L * length);
+    TEST_ASSERT_TRUE(fabsl(ld(sum.duration) - duration) <= 0.0L);
+    TEST_ASSERT_TRUE(fabsl(ld(sum.energy) - energy) <= 3e-7L * energy);
+    TEST_ASSERT_TRUE(fabsl(ld(sum.risk) - (length > 0.0L ? risk / length : 0.0L)) <= 1e-11L);
+    return duration;
+}
+
+// ---- random paths
+
+typedef struct style { // what a random path is made of
+    double piece_max, radius_min;
+    bool free_heading; // theta turns by itself along lines, as OMNI may
+    bool tight;        // clearances around creep_clearance
+} style;
+
+static double uniform(aisle_rng *rng, double lo, double hi) {
+    return lo + (hi - lo) * (double)aisle_rng_float(rng);
+}
+
+// One more piece from the last waypoint in its heading (or against it); dir: of motion.
+static void add_piece(aisle_rng *rng, const style *how, bool back) {
+    const aisle_waypoint_msg from = path[count - 1];
+    const double dir = from.theta + (back ? AISLE_PI : 0.0);
+    const double length = aisle_rng_below(rng, 8) == 0 ? uniform(rng, 1e-6, 1e-3) : uniform(rng, 1e-3, how->piece_max);
+    aisle_waypoint_msg *w;
+    if (aisle_rng_below(rng, 2) == 0) {
+        const double spin = how->free_heading ? uniform(rng, -3.0, 3.0) * fmin(length, 1.0) : 0.0;
+        w = add(from.x + length * cos(dir), from.y + length * sin(dir), aisle_angle_wrap(from.theta + spin));
+    } else {
+        const double radius = uniform(rng, how->radius_min, 8.0), side = aisle_rng_below(rng, 2) == 0 ? 1.0 : -1.0;
+        const double bend = side * fmin(length / radius, 3.1), chord = 2.0 * radius * sin(0.5 * fabs(bend));
+        w = add(from.x + chord * cos(dir + 0.5 * bend), from.y + chord * sin(dir + 0.5 * bend),
+                aisle_angle_wrap(from.theta + bend));
+        w->curvature = (float)(side / radius);
+    }
+    w->flags = back ? AISLE_WAYPOINT_REVERSE : 0;
+    w->clearance = how->tight ? (float)uniform(rng, 0.0, 1.0) : 3.0F;
+}
+
+static void add_turn(aisle_rng *rng) {
+    aisle_waypoint_msg *from = &path[count - 1];
+    set_flag(from, AISLE_WAYPOINT_TURN_IN_PLACE | (aisle_rng_below(rng, 2) == 0 ? AISLE_WAYPOINT_STOP : 0));
+    const double b = aisle_rng_below(rng, 6) == 0 ? 0.0 : uniform(rng, -3.1, 3.1);
+    (void)add(from->x, from->y, aisle_angle_wrap(from->theta + b));
+}
+
+static void random_path(uint64_t seed, uint32_t n) {
+    aisle_rng rng = aisle_rng_seed(seed);
+    const style how = {.piece_max = seed % 4 == 0 ? 3.0 : 0.3,
+                       .radius_min = 0.3,
+                       .free_heading = seed % 5 == 0,
+                       .tight = seed % 3 == 0};
+    count = 0;
+    bool back = false;
+    (void)add(uniform(&rng, -50.0, 50.0), uniform(&rng, -50.0, 50.0), uniform(&rng, -3.0, 3.0));
+    while (count < n) {
+        const uint32_t what = aisle_rng_below(&rng, 40);
+        back = what == 0 ? !back : back;
+        if (what == 1) {
+            add_turn(&rng);
+        } else {
+            add_piece(&rng, &how, back);
+        }
+        if (what == 2) {
+            set_flag(&path[count - 1], AISLE_WAYPOINT_STOP);
+            dwell[count - 1] = (float)uniform(&rng, 0.0, 20.0);
+        }
+    }
+}
+
+static void random_vehicle(uint64_t seed) {
+    aisle_rng rng = aisle_rng_seed(seed ^ 0x5eedU);
+    const aisle_vehicle_msg msg = {.v_max = (float)uniform(&rng, 0.5, 3.0),
+                                   .v_reverse_max = (float)uniform(&rng, 0.1, 1.0),
+                                   .a_max = (float)uniform(&rng, 0.2, 2.0),
+                                   .d_max = (float)uniform(&rng, 0.2, 2.0),
+                                   .omega_max = (float)uniform(&rng, 0.3, 2.0),
+                                   .alpha_max = (float)uniform(&rng, 0.3, 3.0),
+                                   .lateral_a_max = (float)uniform(&rng, 0.1, 2.0)};
+    set_vehicle(&msg);
+}
+
+static void test_every_rule_holds_and_no_speed_could_be_higher_for_200_of_200_paths(void) {
+    memset(hits, 0, sizeof hits);
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        setUp();
+        if (seed % 2 == 1) {
+            random_vehicle(seed);
+        }
+        random_path(seed, 2 + (uint32_t)seed * 2);
+        fill();
+        (void)judge_path();
+    }
+    for (int i = 0; i < CAUSES; i++) { // the seeds meet every case
+        TEST_ASSERT_GREATER_THAN_UINT32_MESSAGE(50, hits[i], "a case hardly met");
+    }
+}
+
+static void test_a_path_of_1024_waypoints_and_3000_seconds_keeps_every_rule_as_float(void) {
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        setUp();
+        random_path(4 * seed, CAPACITY);
+        for (uint32_t i = 0; i < count; i++) {
+            path[i].clearance = i % 2 == 0 ? 0.1F : 3.0F;
+        }
+        dwell[0] = 2500.0F;
+        fill();
+        TEST_ASSERT_TRUE(judge_path() > 3000.0L);
+    }
+}
+
+static void test_micrometre_pieces_stay_a_millisecond_apart_however_late(void) {
+    const float late[] = {0.0F, 3000.0F, 9000.0F, 16370.0F};
+    for (int k = 0; k < 4; k++) {
+        setUp();
+        (void)add(0.0, 0.0, 0.0);
+        add_line(2.0, 0.25);
+        add_line(1e-4, 1e-6);
+        add_line(2.0, 0.25);
+        dwell[0] = late[k];
+        fill();
+        (void)judge_path();
+        for (uint32_t i = 1; i < count; i++) {
+            TEST_ASSERT_TRUE((double)path[i].t - (double)path[i - 1].t >= 1e-3 - 1e-12);
+        }
+    }
+}
+
+// ---- closed forms
+
+static void test_a_long_line_is_driven_as_a_trapezoid(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(10.0, 0.25); // 1.5 m/s is reached after 2.25 m, left 2.25 m before the end
+    fill();
+    for (uint32_t i = 0; i < count; i++) {
+        const double x = fmin(0.25 * i, 10.0 - 0.25 * i);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, fminf(1.5F, sqrtf((float)x)), path[i].v); // v^2 = 2 * 0.5 * x
+        const float a = i == 0 || (i > 9 && i <= 31) ? 0.0F : (i <= 9 ? 0.5F : -0.5F);
+        TEST_ASSERT_FLOAT_WITHIN(2e-5F, a, path[i].a);
+    }
+    const double duration = 3.0 + 5.5 / 1.5 + 3.0;
+    TEST_ASSERT_DOUBLE_WITHIN(5e-5, duration, sum.duration);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10.0, sum.length);
+    const double energy = (500.0 * 9.80665 * 0.015 * 10.0 + 0.5 * 500.0 * 1.5 * 1.5) / 0.8 + 50.0 * duration;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5 * energy, energy, sum.energy);
+}
+
+static void test_a_short_line_is_driven_as_a_triangle(void) {
+    const aisle_vehicle_msg msg = {.a_max = 0.5F, .d_max = 1.0F};
+    set_vehicle(&msg);
+    (void)add(0.0, 0.0, 0.0);
+    add_line(3.0, 0.25); // up to sqrt(2) m/s at 2 m
+    fill();
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, sqrtf(2.0F), path[8].v);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, sqrt(2.0) / 0.5 + sqrt(2.0) / 1.0, sum.duration);
+}
+
+static void test_one_piece_from_rest_to_rest_lasts_as_long_as_when_it_is_split(void) {
+    const double length[3] = {10.0, 4.5, 2.0}; // trapezoid, just a triangle, triangle
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        (void)add(0.0, 0.0, 0.0);
+        add_line(length[i], 0.25);
+        fill();
+        const aisle_profile_sum split = sum;
+        count = 0;
+        (void)add(0.0, 0.0, 0.0);
+        (void)add(length[i], 0.0, 0.0);
+        fill();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, split.duration, sum.duration);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-5 * split.energy, split.energy, sum.energy);
+        TEST_ASSERT_FALSE(path[0].v > 0.0F || path[1].v > 0.0F || path[1].a > 0.0F || path[1].a < 0.0F);
+    }
+}
+
+static void test_one_piece_from_rest_to_rest_keeps_to_its_limit(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add(3.0, 0.0, 0.0)->clearance = 0.4F; // creep: 0.3 m/s
+    fill();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.6 + 0.6 + (3.0 - 0.18) / 0.3, sum.duration);
+}
+
+static void test_a_turn_on_the_spot_is_a_trapezoid_of_the_turn_rate(void) {
+    const double turn[4] = {0.5 * AISLE_PI, -2.5, 0.5, -0.01};
+    for (int i = 0; i < 4; i++) {
+        count = 0;
+        set_flag(add(0.0, 0.0, 0.3), AISLE_WAYPOINT_TURN_IN_PLACE);
+        (void)add(0.0, 0.0, aisle_angle_wrap(0.3 + turn[i]));
+        fill();
+        const double b = fabs(turn[i]), duration = b > 1.0 ? b + 1.0 : 2.0 * sqrt(b);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, duration, sum.duration);
+        const double around = sqrt(0.5 * 0.5 + 0.35 * 0.35) * b;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, 500.0 * 9.80665 * 0.015 * around / 0.8 + 50.0 * duration, sum.energy);
+        TEST_ASSERT_FALSE(sum.length > 0.0 || sum.risk > 0.0 || path[1].s > 0.0F || path[1].v > 0.0F);
+    }
+}
+
+static void test_braking_feeds_nothing_back(void) { // two ramps up are paid twice
+    (void)add(0.0, 0.0, 0.0);
+    add_line(2.0, 0.25);
+    fill();
+    const aisle_profile_sum once = sum;
+    set_flag(&path[count - 1], AISLE_WAYPOINT_STOP);
+    add_line(2.0, 0.25);
+    fill();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 2.0 * once.duration, sum.duration);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-2, 2.0 * once.energy, sum.energy);
+}
+
+static void test_risk_is_the_mean_over_the_length(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(4.0, 0.5);
+    path[1].clearance = 0.25F; // half the creep clearance, over 0.5 m of 4 m
+    path[2].clearance = 0.0F;  // contact
+    path[3].clearance = 0.5F;  // just enough
+    fill();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, (0.5 * 0.5 + 0.5 * 1.0) / 4.0, sum.risk);
+}
+
+// ---- limits one by one
+
+// Greatest speed on a long line of quarter metres whose pieces were changed by `change`.
+static float top_speed(void (*change)(uint32_t i)) {
+    count = 0;
+    (void)add(0.0, 0.0, 0.0);
+    add_line(20.0, 0.25);
+    float top = 0.0F;
+    for (uint32_t i = 1; i < count; i++) {
+        change(i);
+    }
+    fill();
+    for (uint32_t i = 0; i < count; i++) {
+        top = fmaxf(top, path[i].v);
+    }
+    (void)judge_path();
+    return top;
+}
+
+static void leave(uint32_t i) {
+    (void)i;
+}
+static void reverse(uint32_t i) {
+    set_flag(&path[i], AISLE_WAYPOINT_REVERSE);
+}
+static void bend(uint32_t i) {
+    path[i].curvature = i % 2 == 0 ? 0.5F : -0.5F;
+}
+static void spin(uint32_t i) {
+    path[i].theta = aisle_angle_wrap(0.5 * i);
+}
+static void come_close(uint32_t i) {
+    path[i].clearance = 0.49999F;
+}
+static void keep_just_off(uint32_t i) {
+    path[i].clearance = 0.5F;
+}
+
+static void test_each_limit_holds_alone(void) {
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 1.5F, top_speed(leave));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.3F, top_speed(reverse));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 1.0F, top_speed(bend));         // sqrt(0.5 / 0.5)
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.25F / 0.5F, top_speed(spin)); // 1 rad/s
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.3F, top_speed(come_close));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 1.5F, top_speed(keep_just_off)); // not below the creep clearance
+}
+
+static void test_a_slow_piece_slows_both_its_ends_and_braking_begins_before_it(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(10.0, 0.25);
+    path[20].clearance = 0.1F;
+    fill();
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.3F, path[19].v);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.3F, path[20].v);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, sqrtf(0.09F + 0.25F), path[18].v);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, sqrtf(0.09F + 0.25F), path[21].v);
+}
+
+static void test_it_rests_at_stops_turns_and_where_reverse_begins_or_ends(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(10.0, 0.25);
+    set_flag(&path[8], AISLE_WAYPOINT_STOP);
+    set_flag(&path[16], AISLE_WAYPOINT_TURN_IN_PLACE);
+    path[17].x = path[16].x;
+    set_flag(&path[26], AISLE_WAYPOINT_REVERSE);
+    set_flag(&path[27], AISLE_WAYPOINT_REVERSE);
+    fill();
+    for (uint32_t i = 0; i < count; i++) {
+        const bool rests = i == 0 || i == 8 || i == 16 || i == 17 || i == 25 || i == 27 || i == 40;
+        TEST_ASSERT_TRUE(rests ? path[i].v <= 0.0F : path[i].v > 0.0F);
+    }
+    (void)judge_path();
+}
+
+static void test_dwell_delays_what_follows_and_counts_for_nothing_at_the_end(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(8.0, 0.25);
+    set_flag(&path[16], AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_GOAL);
+    fill();
+    const aisle_profile_sum straight_on = sum;
+    const double reached = (double)path[16].t;
+    dwell[0] = 2.0F;
+    dwell[16] = 7.5F;
+    dwell[32] = 100.0F;
+    fill();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 2.0 + reached, (double)path[16].t);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 9.5 + straight_on.duration, sum.duration);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-2, 50.0 * 9.5 + straight_on.energy, sum.energy);
+    (void)judge_path();
+}
+
+static void test_it_may_dwell_before_and_after_a_turn(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(2.0, 0.25);
+    set_flag(&path[count - 1], AISLE_WAYPOINT_TURN_IN_PLACE);
+    (void)add(path[count - 1].x, 0.0, 1.0);
+    path[count - 1].theta = 0.0;
+    add_line(2.0, 0.25);
+    dwell[8] = 3.0F;
+    dwell[9] = 5.0F;
+    fill();
+    (void)judge_path();
+}
+
+static void test_no_dwells_and_zero_dwells_are_the_same(void) {
+    static aisle_waypoint_msg other[CAPACITY];
+    random_path(3, 100);
+    memset(dwell, 0, sizeof dwell);
+    fill();
+    memcpy(other, path, sizeof other);
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill(&vehicle, NULL, path, count, NULL, &sum));
+    TEST_ASSERT_EQUAL_MEMORY(other, path, sizeof other);
+}
+
+static void test_a_single_waypoint_is_a_path_without_length(void) {
+    (void)add(1.0, 2.0, 3.0);
+    sum.risk = 9.0;
+    fill();
+    TEST_ASSERT_FALSE(path[0].s > 0.0F || path[0].t > 0.0F || path[0].v > 0.0F || path[0].a > 0.0F);
+    const aisle_profile_sum nothing = {0.0, 0.0, 0.0, 0.0};
+    TEST_ASSERT_EQUAL_MEMORY(&nothing, &sum, sizeof sum);
+}
+
+static void test_filling_twice_gives_the_same_bits_and_reads_no_output(void) {
+    static aisle_waypoint_msg first[CAPACITY];
+    random_path(12, 300);
+    fill();
+    memcpy(first, path, sizeof first);
+    const aisle_profile_sum once = sum;
+    for (uint32_t i = 0; i < count; i++) {
+        path[i].s = path[i].t = path[i].v = path[i].a = NAN;
+    }
+    path[0].curvature = path[0].clearance = NAN; // no piece ends there
+    fill();
+    path[0].curvature = first[0].curvature;
+    path[0].clearance = first[0].clearance;
+    TEST_ASSERT_EQUAL_MEMORY(first, path, sizeof first);
+    TEST_ASSERT_EQUAL_MEMORY(&once, &sum, sizeof sum);
+}
+
+static void test_what_is_not_speed_or_time_is_left_alone(void) {
+    static aisle_waypoint_msg before[CAPACITY];
+    random_path(15, 200);
+    for (uint32_t i = 0; i < count; i++) {
+        path[i].goal_id = (int32_t)i;
+        set_flag(&path[i], AISLE_WAYPOINT_GOAL | 64);
+    }
+    memcpy(before, path, sizeof before);
+    fill();
+    for (uint32_t i = 0; i < count; i++) {
+        before[i].s = path[i].s;
+        before[i].t = path[i].t;
+        before[i].v = path[i].v;
+        before[i].a = path[i].a;
+    }
+    TEST_ASSERT_EQUAL_MEMORY(before, path, sizeof before);
+}
+
+// ---- geometry
+
+static void test_length_of_an_arc_is_right_for_every_curvature(void) {
+    aisle_rng rng = aisle_rng_seed(17);
+    for (int trial = 0; trial < 20000; trial++) {
+        count = 0;
+        const double chord = pow(10.0, uniform(&rng, -6.0, 3.0)), angle = uniform(&rng, -3.0, 3.0);
+        (void)add(uniform(&rng, -10.0, 10.0), uniform(&rng, -10.0, 10.0), 0.0);
+        aisle_waypoint_msg *w = add(path[0].x + chord * cos(angle), path[0].y + chord * sin(angle), 0.0);
+        const double sine = trial % 4 == 0 ? uniform(&rng, 0.005, 0.9999) : pow(10.0, uniform(&rng, -12.0, -0.01));
+        w->curvature = (float)(2.0 * sine / chord * (trial % 2 == 0 ? 1.0 : -1.0));
+        const long double length = judge_length(1), found = ld(aisle_piece_length(&path[0], w));
+        TEST_ASSERT_TRUE(fabsl(found - length) <= 1e-12L * length);
+    }
+}
+
+static void test_length_of_lines_half_circles_and_turns(void) {
+    (void)add(1.0, 1.0, 0.0);
+    aisle_waypoint_msg *w = add(4.0, 5.0, 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 5.0, aisle_piece_length(&path[0], w));
+    w->curvature = 1e-38F;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 5.0, aisle_piece_length(&path[0], w));
+    w->curvature = -0.4F; // float 0.4 is a little above: the chord is longer than the diameter
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.5 * AISLE_PI, aisle_piece_length(&path[0], w));
+    set_flag(&path[0], AISLE_WAYPOINT_TURN_IN_PLACE);
+    TEST_ASSERT_FALSE(aisle_piece_length(&path[0], w) > 0.0);
+}
+
+static void test_turn_goes_the_short_way(void) {
+    (void)add(0.0, 0.0, 3.0);
+    (void)add(0.0, 0.0, -3.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 2.0 * AISLE_PI - 6.0, aisle_piece_turn(&path[0], &path[1]));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 6.0 - 2.0 * AISLE_PI, aisle_piece_turn(&path[1], &path[0]));
+}
+
+// ---- refusals
+
+static void assert_refused(void) { // nothing is changed
+    static aisle_waypoint_msg before[CAPACITY + 1];
+    memcpy(before, path, sizeof before);
+    const aisle_profile_sum old = sum;
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill(&vehicle, NULL, path, count, dwell, &sum));
+    TEST_ASSERT_EQUAL_MEMORY(before, path, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&old, &sum, sizeof sum);
+}
+
+static void start_line(void) {
+    setUp();
+    sum.energy = 42.0;
+    (void)add(0.0, 0.0, 0.0);
+    add_line(4.0, 0.5);
+}
+
+static void test_missing_arguments_are_refused(void) {
+    start_line();
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill(NULL, NULL, path, count, NULL, &sum));
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill(&vehicle, NULL, NULL, count, NULL, &sum));
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill(&vehicle, NULL, path, count, NULL, NULL));
+    count = 0;
+    assert_refused();
+}
+
+static void test_numbers_not_finite_or_out_of_range_are_refused_wherever_they_are(void) {
+    const double wild[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1.0001e5, -1e300};
+    for (uint32_t i = 0; i < 9; i += 4) {
+        for (int k = 0; k < 15; k++) {
+            start_line();
+            double *const member[3] = {&path[i].x, &path[i].y, &path[i].theta};
+            *member[k / 5] = wild[k % 5];
+            assert_refused();
+        }
+        const float bad[] = {NAN, INFINITY, -INFINITY};
+        for (int k = 0; k < 6 && i > 0; k++) {
+            start_line();
+            float *const member[2] = {&path[i].curvature, &path[i].clearance};
+            *member[k / 3] = bad[k % 3];
+            assert_refused();
+        }
+    }
+}
+
+static void test_curvature_and_clearance_of_a_turn_must_be_finite_too(void) {
+    for (int k = 0; k < 2; k++) {
+        start_line();
+        set_flag(&path[2], AISLE_WAYPOINT_TURN_IN_PLACE);
+        path[3].x = path[2].x;
+        *(k == 0 ? &path[3].curvature : &path[3].clearance) = NAN;
+        assert_refused();
+    }
+}
+
+static void test_a_negative_clearance_is_refused(void) {
+    start_line();
+    path[3].clearance = -0.001F;
+    assert_refused();
+}
+
+static void test_a_piece_without_length_is_refused_unless_it_turns(void) {
+    start_line();
+    path[3].x = path[2].x;
+    assert_refused();
+    path[3].x = path[2].x + 0.9e-9;
+    assert_refused();
+    set_flag(&path[2], AISLE_WAYPOINT_TURN_IN_PLACE);
+    fill();
+    start_line();
+    path[3].x = path[2].x + 1.1e-9;
+    fill();
+    (void)judge_path();
+}
+
+static void test_a_turn_that_moves_is_refused(void) {
+    start_line();
+    set_flag(&path[2], AISLE_WAYPOINT_TURN_IN_PLACE);
+    assert_refused();
+    path[3].x = path[2].x - 1.1e-9;
+    assert_refused();
+}
+
+static void test_an_arc_with_a_chord_longer_than_its_diameter_is_refused(void) {
+    start_line();
+    path[3].curvature = 4.00001F;
+    assert_refused();
+    path[3].curvature = -4.1F;
+    assert_refused();
+    path[3].curvature = 4.000001F; // within what float can tell
+    fill();
+    path[3].curvature = -4.0F;
+    fill();
+}
+
+static void test_dwells_that_are_negative_or_not_finite_or_on_the_move_are_refused(void) {
+    const float bad[] = {-1.0F, NAN, INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < 9; i += 4) {
+        for (int k = 0; k < 4; k++) {
+            start_line();
+            set_flag(&path[4], AISLE_WAYPOINT_STOP);
+            dwell[i] = bad[k];
+            assert_refused();
+        }
+    }
+    start_line();
+    dwell[4] = 1.0F;
+    assert_refused();
+}
+
+static void test_more_time_than_float_can_tell_is_refused_and_the_geometry_stays(void) {
+    start_line();
+    dwell[0] = 16370.0F;
+    fill();
+    const aisle_profile_sum old = sum;
+    dwell[0] = 16384.0F;
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_CAPACITY, aisle_profile_fill(&vehicle, NULL, path, count, dwell, &sum));
+    TEST_ASSERT_EQUAL_MEMORY(&old, &sum, sizeof sum);
+    for (uint32_t i = 0; i < count; i++) {
+        TEST_ASSERT_EQUAL_DOUBLE(0.5 * i, path[i].x);
+    }
+}
+
+static void test_a_vehicle_slow_beyond_reason_is_refused_not_divided_by(void) {
+    const float slow[] = {1e-20F, FLT_MIN};
+    for (int i = 0; i < 6; i++) {
+        start_line();
+        path[2].theta = 3.0;
+        set_flag(&path[4], AISLE_WAYPOINT_STOP);
+        const float v = slow[i % 2];
+        const aisle_vehicle_msg msg = {
+            .v_max = i / 2 == 0 ? v : 0.0F, .a_max = i / 2 == 1 ? v : 0.0F, .omega_max = i / 2 == 2 ? v : 0.0F};
+        set_vehicle(&msg);
+        const aisle_status status = aisle_profile_fill(&vehicle, NULL, path, count, NULL, &sum);
+        TEST_ASSERT_EQUAL_INT(AISLE_ERR_CAPACITY, status);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_every_rule_holds_and_no_speed_could_be_higher_for_200_of_200_paths);
+    RUN_TEST(test_a_path_of_1024_waypoints_and_3000_seconds_keeps_every_rule_as_float);
+    RUN_TEST(test_micrometre_pieces_stay_a_millisecond_apart_however_late);
+    RUN_TEST(test_a_long_line_is_driven_as_a_trapezoid);
+    RUN_TEST(test_a_short_line_is_driven_as_a_triangle);
+    RUN_TEST(test_one_piece_from_rest_to_rest_lasts_as_long_as_when_it_is_split);
+    RUN_TEST(test_one_piece_from_rest_to_rest_keeps_to_its_limit);
+    RUN_TEST(test_a_turn_on_the_spot_is_a_trapezoid_of_the_turn_rate);
+    RUN_TEST(test_braking_feeds_nothing_back);
+    RUN_TEST(test_risk_is_the_mean_over_the_length);
+    RUN_TEST(test_each_limit_holds_alone);
+    RUN_TEST(test_a_slow_piece_slows_both_its_ends_and_braking_begins_before_it);
+    RUN_TEST(test_it_rests_at_stops_turns_and_where_reverse_begins_or_ends);
+    RUN_TEST(test_dwell_delays_what_follows_and_counts_for_nothing_at_the_end);
+    RUN_TEST(test_it_may_dwell_before_and_after_a_turn);
+    RUN_TEST(test_no_dwells_and_zero_dwells_are_the_same);
+    RUN_TEST(test_a_single_waypoint_is_a_path_without_length);
+    RUN_TEST(test_filling_twice_gives_the_same_bits_and_reads_no_output);
+    RUN_TEST(test_what_is_not_speed_or_time_is_left_alone);
+    RUN_TEST(test_length_of_an_arc_is_right_for_every_curvature);
+    RUN_TEST(test_length_of_lines_half_circles_and_turns);
+    RUN_TEST(test_turn_goes_the_short_way);
+    RUN_TEST(test_missing_arguments_are_refused);
+    RUN_TEST(test_numbers_not_finite_or_out_of_range_are_refused_wherever_they_are);
+    RUN_TEST(test_curvature_and_clearance_of_a_turn_must_be_finite_too);
+    RUN_TEST(test_a_negative_clearance_is_refused);
+    RUN_TEST(test_a_piece_without_length_is_refused_unless_it_turns);
+    RUN_TEST(test_a_turn_that_moves_is_refused);
+    RUN_TEST(test_an_arc_with_a_chord_longer_than_its_diameter_is_refused);
+    RUN_TEST(test_dwells_that_are_negative_or_not_finite_or_on_the_move_are_refused);
+    RUN_TEST(test_more_time_than_float_can_tell_is_refused_and_the_geometry_stays);
+    RUN_TEST(test_a_vehicle_slow_beyond_reason_is_refused_not_divided_by);
+    return UNITY_END();
+}
