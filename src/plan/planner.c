@@ -1,0 +1,419 @@
+#include "plan/planner_state.h"
+
+#include "base/check.h"
+
+#include <stddef.h>
+#include <string.h>
+
+// ---- memory
+
+static bool resolve(uint32_t *value, uint32_t standard, uint32_t lo, uint32_t hi) {
+    if (*value == 0U) {
+        *value = standard;
+    }
+    return *value >= lo && *value <= hi;
+}
+
+static bool resolve_limits(aisle_limits *limits) {
+    return resolve(&limits->cells, AISLE_LIMITS_CELLS_DEFAULT, 4096U, AISLE_LIMITS_CELLS_MAX) &&
+           resolve(&limits->polygons, AISLE_LIMITS_POLYGONS_DEFAULT, 1U, 4096U) &&
+           resolve(&limits->vertices, AISLE_LIMITS_VERTICES_DEFAULT, 3U, 65536U) &&
+           resolve(&limits->open_nodes, AISLE_LIMITS_OPEN_NODES_DEFAULT, 1024U, 4194304U) &&
+           resolve(&limits->requests, AISLE_LIMITS_REQUESTS_DEFAULT, 1U, 64U);
+}
+
+// Closes a row of the memory table: everything taken since the last one.
+static void row(aisle_planner *self, const aisle_arena *arena, size_t *from, const char *name) {
+    AISLE_ASSERT(self->row_count < AISLE_MEMORY_ROWS);
+    self->rows[self->row_count++] = (aisle_memory_row){.name = name, .bytes = arena->used - *from};
+    *from = arena->used;
+}
+
+// One walk for measuring and carving. The planner and the structs with carve functions of their own come first, so that in a
+// measuring walk stand-ins on the caller's side take the pointers.
+typedef struct stand_ins {
+    aisle_planner planner;
+    aisle_layout layout;
+    aisle_route route;
+} stand_ins;
+
+static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits, stand_ins *instead) {
+    size_t from = 0;
+    aisle_planner *self = (aisle_planner *)aisle_arena_take(arena, 1U, sizeof(aisle_planner));
+    aisle_layout *layout = (aisle_layout *)aisle_arena_take(arena, 1U, sizeof(aisle_layout));
+    aisle_route *route = (aisle_route *)aisle_arena_take(arena, 1U, sizeof(aisle_route));
+    self = self != NULL ? self : &instead->planner;
+    self->layout = layout != NULL ? layout : &instead->layout;
+    self->route = route != NULL ? route : &instead->route;
+    row(self, arena, &from, "planner");
+    aisle_layout_carve(self->layout, arena, limits);
+    row(self, arena, &from, "layout and grid");
+    aisle_route_carve(self->route, arena, limits);
+    row(self, arena, &from, "search and paths");
+    self->queue = (aisle_request *)aisle_arena_take(arena, limits->requests, sizeof(aisle_request));
+    row(self, arena, &from, "requests");
+    self->vehicle_msg = (aisle_vehicle_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_vehicle_msg));
+    self->head = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    self->mission.path = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    self->mission.current.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    self->refusal[0] = (uint8_t *)aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
+    self->refusal[1] = (uint8_t *)aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
+    row(self, arena, &from, "answers");
+    return self;
+}
+
+size_t aisle_planner_memsize(const aisle_limits *limits) {
+    if (limits == NULL) {
+        return 0;
+    }
+    aisle_limits resolved = *limits;
+    if (!resolve_limits(&resolved)) {
+        return 0;
+    }
+    stand_ins instead;
+    memset(&instead, 0, sizeof instead);
+    aisle_arena arena = aisle_arena_measure();
+    (void)carve(&arena, &resolved, &instead);
+    return arena.overflow ? 0 : arena.used;
+}
+
+aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *config, aisle_planner **planner) {
+    if (memory == NULL || config == NULL || planner == NULL || (uintptr_t)memory % AISLE_ARENA_ALIGN != 0U) {
+        return AISLE_ERR_ARG;
+    }
+    size_t need = aisle_planner_memsize(&config->limits);
+    aisle_vehicle vehicle = {0};
+    aisle_refusal why;
+    if (need == 0U || config->work_units < 0 ||
+        (config->has_vehicle && aisle_vehicle_from_msg(&config->vehicle, &vehicle, &why) != AISLE_OK)) {
+        return AISLE_ERR_ARG;
+    }
+    if (size < need) {
+        return AISLE_ERR_CAPACITY;
+    }
+    aisle_limits limits = config->limits;
+    bool in_range = resolve_limits(&limits);
+    aisle_arena arena = aisle_arena_over(memory, need);
+    aisle_planner *self = carve(&arena, &limits, NULL);
+    AISLE_ASSERT(in_range && !arena.overflow && arena.used == need);
+    self->config = *config;
+    self->config.limits = limits;
+    self->has_vehicle = config->has_vehicle;
+    self->vehicle = vehicle;
+    *self->vehicle_msg = config->vehicle;
+    self->vehicle_msg->utime = 0; // the settings' vehicle gives way to any message
+    self->route->budget_default = config->work_units > 0 ? (uint32_t)config->work_units : AISLE_WORK_UNITS_DEFAULT;
+    *planner = self;
+    return AISLE_OK;
+}
+
+size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, size_t capacity) {
+    for (uint32_t i = 0; i < self->row_count && i < capacity; i++) {
+        rows[i] = self->rows[i];
+    }
+    return self->row_count;
+}
+
+// ---- requests in turn
+
+static bool bad_numbers(const aisle_request *request) {
+    return request->num_goals < 1 || request->start.tolerance_theta < 0.0F;
+}
+
+// Why a request cannot even begin; cause 0: it can.
+static aisle_refusal obstacle_to(const aisle_planner *self, const aisle_request *request) {
+    if (!aisle_layout_is_in_force(self->layout)) {
+        return (aisle_refusal){AISLE_STATUS_NO_LAYOUT, 0, 0.0F};
+    }
+    if (!self->has_vehicle) {
+        return (aisle_refusal){AISLE_STATUS_NO_VEHICLE, 0, 0.0F};
+    }
+    if (request->map_id != 0 && request->map_id != aisle_layout_map_id(self->layout)) {
+        return (aisle_refusal){AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_id(self->layout), 0.0F};
+    }
+    if (bad_numbers(request)) {
+        return (aisle_refusal){AISLE_STATUS_MALFORMED, 0, (float)request->num_goals};
+    }
+    if (!request->is_query && request->pose_utime == 0) {
+        return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
+    }
+    if (!request->is_query && self->pose.localized == 0) {
+        return (aisle_refusal){AISLE_STATUS_NOT_LOCALIZED, self->pose.seq, 0.0F};
+    }
+    return (aisle_refusal){0, 0, 0.0F};
+}
+
+static bool is_stale(const aisle_planner *self, const aisle_request *request) {
+    const aisle_request *held = &self->mission.request;
+    return !request->is_query && (!self->mission.wanted || held->goal_list_id != request->goal_list_id ||
+                                  held->goal_list_revision != request->goal_list_revision);
+}
+
+static void begin_next(aisle_planner *self) {
+    const aisle_request *request = &self->queue[self->queue_head];
+    self->queue_head = (self->queue_head + 1U) % self->config.limits.requests;
+    self->queue_count--;
+    if (is_stale(self, request)) {
+        return; // cancelled or overtaken by a newer goal list
+    }
+    aisle_refusal why = obstacle_to(self, request);
+    if (why.cause != 0) {
+        aisle_planner_refuse(self, request, &why, NULL, 0);
+        self->counters[request->is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
+        return;
+    }
+    aisle_path_msg *head = self->head;
+    head->utime = self->now_us;
+    head->boot_id = self->config.boot_id;
+    head->path_revision = self->path_revision + 1;
+    head->t0_utime = self->now_us;
+    head->valid_until_utime = self->now_us + AISLE_LEASE_US;
+    head->obstacles_utime = 0;
+    aisle_route_start(self->route, self->layout, &self->vehicle, request, head);
+    self->planning = true;
+}
+
+static void count_route(aisle_planner *self) {
+    const aisle_route *route = self->route;
+    int64_t *counters = self->counters;
+    counters[AISLE_COUNTER_NODES] += route->nodes;
+    counters[AISLE_COUNTER_SWARM_EVALS] += route->swarm_evals;
+    counters[AISLE_COUNTER_VERIFY_FAILED] += route->verify_failed;
+    counters[AISLE_COUNTER_VERIFY_INTERVALS] += route->intervals;
+    counters[AISLE_COUNTER_WORK_UNITS] += route->spent;
+    counters[AISLE_COUNTER_OPEN_NODES_MAX] = route->seed.search.open_used_max;
+    counters[AISLE_COUNTER_CCD_CALLS] += route->collide.calls;
+    if (route->collide.support_max > counters[AISLE_COUNTER_CCD_SUPPORT_MAX]) {
+        counters[AISLE_COUNTER_CCD_SUPPORT_MAX] = route->collide.support_max;
+    }
+    counters[route->request.is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
+}
+
+static void end_route(aisle_planner *self) {
+    aisle_route *route = self->route;
+    self->planning = false;
+    count_route(self);
+    const aisle_proof *answer = aisle_route_answer(route);
+    if (answer == NULL) {
+        self->mission.cause = route->request.is_query ? self->mission.cause : route->cause.cause;
+        self->mission.cause_id = route->request.is_query ? self->mission.cause_id : route->cause.id;
+        aisle_planner_refuse(self, &route->request, &route->cause, route->has_place ? &route->place : NULL, route->spent);
+    } else if (route->request.is_query || answer != &route->first || !route->announced) {
+        aisle_planner_publish(self, &route->request, answer);
+    }
+}
+
+static void step_route(aisle_planner *self, uint32_t units) {
+    if (is_stale(self, &self->route->request)) {
+        self->planning = false;
+        count_route(self);
+        return;
+    }
+    aisle_status st = aisle_route_step(self->route, units);
+    if (st == AISLE_OK) {
+        end_route(self);
+    } else if (st == AISLE_PARTIAL && !self->route->request.is_query) {
+        aisle_planner_publish(self, &self->route->request, &self->route->first);
+    }
+}
+
+static void step_layout(aisle_planner *self, uint32_t units) {
+    if (aisle_layout_build(self->layout, units) == AISLE_OK) {
+        self->building = false;
+        self->counters[AISLE_COUNTER_LAYOUTS]++;
+        aisle_planner_replan(self);
+    }
+}
+
+// ---- lease
+
+static bool obstacle_present(const aisle_planner *self, int32_t *id) {
+    for (int i = 0; i < AISLE_OBSTACLES_MAX_SOURCES; i++) {
+        if (self->obstacle_id[i] != 0) {
+            *id = self->obstacle_id[i];
+            return true;
+        }
+    }
+    return false;
+}
+
+// Why the mission's path is not renewed; 0: it is.
+static int16_t lease_obstacle(const aisle_planner *self, int32_t *id) {
+    *id = 0;
+    if (obstacle_present(self, id)) {
+        return AISLE_STATUS_BLOCKED_BY;
+    }
+    if (!aisle_planner_pose_is_fresh(self)) {
+        return AISLE_STATUS_POSE_STALE;
+    }
+    return self->pose.localized == 0 ? AISLE_STATUS_NOT_LOCALIZED : 0;
+}
+
+static void renew_lease(aisle_planner *self) {
+    int32_t id;
+    if (self->mission.has_path && !self->held && self->now_us >= self->lease_due_us && lease_obstacle(self, &id) == 0) {
+        aisle_planner_renew(self);
+    }
+}
+
+// ---- public
+
+static bool events_wait(const aisle_planner *self) { return self->out[0].waiting || self->out[1].waiting; }
+
+aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t work_units) {
+    if (now_us > self->now_us) {
+        self->now_us = now_us;
+    }
+    if (events_wait(self)) {
+        return AISLE_BUSY;
+    }
+    if (self->building) {
+        step_layout(self, work_units);
+    } else if (self->planning) {
+        step_route(self, work_units);
+    } else if (self->queue_count > 0U) {
+        begin_next(self);
+    }
+    if (!events_wait(self)) {
+        renew_lease(self);
+    }
+    return aisle_planner_is_busy(self) || events_wait(self) ? AISLE_BUSY : AISLE_OK;
+}
+
+bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
+    for (int kind = 0; kind < 2; kind++) {
+        aisle_outgoing *out = &self->out[kind];
+        if (out->waiting) {
+            out->waiting = false;
+            aisle_status st = aisle_release((aisle_event_kind)kind, out->bytes, out->size, out->stamp, event);
+            AISLE_ASSERT(st == AISLE_OK);
+            return true;
+        }
+    }
+    return false;
+}
+
+int64_t aisle_planner_next_deadline(const aisle_planner *self) {
+    int32_t id;
+    bool leased = self->mission.has_path && !self->held && lease_obstacle(self, &id) == 0;
+    return leased ? self->lease_due_us : INT64_MAX;
+}
+
+const int64_t *aisle_planner_counters(const aisle_planner *self) { return self->counters; }
+
+// ---- status
+
+static int8_t state_of(const aisle_planner *self, int16_t *cause, int32_t *cause_id) {
+    const aisle_mission *mission = &self->mission;
+    *cause = self->cause;
+    *cause_id = self->cause_id;
+    if (!aisle_layout_is_in_force(self->layout) || !self->has_vehicle) {
+        if (*cause == 0) {
+            *cause = self->has_vehicle ? AISLE_STATUS_NO_LAYOUT : AISLE_STATUS_NO_VEHICLE;
+        }
+        return AISLE_STATUS_WAITING;
+    }
+    if (self->held) {
+        return AISLE_STATUS_HELD;
+    }
+    if (self->planning && !mission->has_path) {
+        return AISLE_STATUS_PLANNING;
+    }
+    if (!mission->wanted) {
+        return AISLE_STATUS_IDLE;
+    }
+    int32_t id;
+    int16_t stopped = mission->has_path ? lease_obstacle(self, &id) : mission->cause;
+    if (stopped != 0 || !mission->has_path) {
+        *cause = stopped;
+        *cause_id = mission->has_path ? id : mission->cause_id;
+        return AISLE_STATUS_BLOCKED;
+    }
+    return AISLE_STATUS_ACTIVE;
+}
+
+// Distance and time left, from the waypoint nearest to the pose on.
+static void remaining(const aisle_planner *self, aisle_status_msg *status) {
+    const aisle_path_msg *path = self->mission.path;
+    if (!self->mission.has_path || path->num_waypoints < 1) {
+        return;
+    }
+    int16_t nearest = 0;
+    double least = -1.0;
+    for (int16_t i = 0; i < path->num_waypoints; i++) {
+        const aisle_waypoint_msg *w = &path->waypoints[i];
+        double away = aisle_vec2_distance(aisle_vec2_of(w->x, w->y), aisle_vec2_of(self->pose.x, self->pose.y));
+        if (least < 0.0 || away < least) {
+            least = away;
+            nearest = i;
+        }
+    }
+    status->distance_remaining = path->length - path->waypoints[nearest].s;
+    status->time_remaining = path->duration - path->waypoints[nearest].t;
+}
+
+static float age(const aisle_planner *self, bool known, int64_t since_us) {
+    return known ? (float)((double)(self->now_us - since_us) * 1e-6) : -1.0F;
+}
+
+void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status) {
+    const aisle_mission *mission = &self->mission;
+    *status = (aisle_status_msg){.utime = now_us,
+                                 .boot_id = self->config.boot_id,
+                                 .protocol = AISLE_PROTOCOL,
+                                 .map_id = aisle_layout_map_id(self->layout),
+                                 .map_revision = aisle_layout_map_revision(self->layout),
+                                 .vehicle_revision = self->has_vehicle ? self->vehicle.revision : 0,
+                                 .path_revision = self->path_revision,
+                                 .command_id = self->command_id,
+                                 .pose_age = age(self, self->has_pose, self->pose_at_us),
+                                 .obstacles_age = -1.0F,
+                                 .num_rejected = (int32_t)self->counters[AISLE_COUNTER_REJECTED]};
+    status->state = state_of(self, &status->cause, &status->cause_id);
+    if (mission->wanted) {
+        status->goal_list_id = mission->request.goal_list_id;
+        status->goal_list_revision = mission->request.goal_list_revision;
+        status->goal_id = mission->request.goals[mission->reached].id;
+    }
+    remaining(self, status);
+}
+
+const char *aisle_cause_name(int16_t cause) {
+    static const struct {
+        int16_t cause;
+        const char *name;
+    } names[] = {{0, "NONE"},
+                 {AISLE_STATUS_NO_LAYOUT, "NO_LAYOUT"},
+                 {AISLE_STATUS_NO_VEHICLE, "NO_VEHICLE"},
+                 {AISLE_STATUS_NO_POSE, "NO_POSE"},
+                 {AISLE_STATUS_POSE_STALE, "POSE_STALE"},
+                 {AISLE_STATUS_NOT_LOCALIZED, "NOT_LOCALIZED"},
+                 {AISLE_STATUS_POSE_OUTSIDE, "POSE_OUTSIDE"},
+                 {AISLE_STATUS_OBSTACLES_STALE, "OBSTACLES_STALE"},
+                 {AISLE_STATUS_MAP_MISMATCH, "MAP_MISMATCH"},
+                 {AISLE_STATUS_REVISION_GAP, "REVISION_GAP"},
+                 {AISLE_STATUS_OUTDATED, "OUTDATED"},
+                 {AISLE_STATUS_CONFLICT, "CONFLICT"},
+                 {AISLE_STATUS_MALFORMED, "MALFORMED"},
+                 {AISLE_STATUS_CLOCK_JUMP, "CLOCK_JUMP"},
+                 {AISLE_STATUS_START_OCCUPIED, "START_OCCUPIED"},
+                 {AISLE_STATUS_GOAL_OCCUPIED, "GOAL_OCCUPIED"},
+                 {AISLE_STATUS_GOAL_OUTSIDE, "GOAL_OUTSIDE"},
+                 {AISLE_STATUS_NO_PATH, "NO_PATH"},
+                 {AISLE_STATUS_BLOCKED_BY, "BLOCKED_BY"},
+                 {AISLE_STATUS_TOO_NARROW, "TOO_NARROW"},
+                 {AISLE_STATUS_KINEMATIC, "KINEMATIC"},
+                 {AISLE_STATUS_BUDGET, "BUDGET"},
+                 {AISLE_STATUS_YIELDING, "YIELDING"},
+                 {AISLE_STATUS_OFF_PATH, "OFF_PATH"},
+                 {AISLE_STATUS_LIMIT, "LIMIT"},
+                 {AISLE_STATUS_VERIFY_FAILED, "VERIFY_FAILED"},
+                 {AISLE_STATUS_WATCHDOG, "WATCHDOG"},
+                 {AISLE_STATUS_INTERNAL, "INTERNAL"}};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (names[i].cause == cause) {
+            return names[i].name;
+        }
+    }
+    return "?";
+}

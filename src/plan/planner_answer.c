@@ -1,0 +1,96 @@
+#include "plan/planner_state.h"
+
+#include "base/check.h"
+
+#include <string.h>
+
+static void queue(aisle_planner *self, aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp) {
+    self->out[kind] = (aisle_outgoing){.bytes = bytes, .size = size, .stamp = stamp, .waiting = true};
+}
+
+static void fill_head(aisle_planner *self, const aisle_request *request) {
+    aisle_path_msg *head = self->head;
+    head->utime = self->now_us;
+    head->boot_id = self->config.boot_id;
+    head->path_revision = self->path_revision;
+    head->query_id = request->query_id;
+    head->goal_list_id = request->goal_list_id;
+    head->goal_list_revision = request->goal_list_revision;
+    head->map_id = aisle_layout_map_id(self->layout);
+    head->map_revision = aisle_layout_map_revision(self->layout);
+    head->vehicle_revision = self->has_vehicle ? self->vehicle.revision : 0;
+    head->pose_utime = request->pose_utime;
+    head->t0_utime = self->now_us;
+    head->valid_until_utime = self->now_us;
+}
+
+void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
+                          const aisle_vec2 *place, uint32_t work_units) {
+    aisle_event_kind kind = request->is_query ? AISLE_EVENT_REPLY : AISLE_EVENT_PATH;
+    if (kind == AISLE_EVENT_PATH) {
+        self->path_revision++;
+        self->mission.has_path = false;
+    }
+    fill_head(self, request);
+    aisle_path_msg *head = self->head;
+    head->status = AISLE_PATH_NONE;
+    head->cause = why->cause;
+    head->cause_id = why->id;
+    head->cause_value = why->value;
+    head->work_units = (int32_t)work_units;
+    head->num_waypoints = place != NULL ? 1 : 0;
+    if (place != NULL) {
+        head->waypoints[0] = (aisle_waypoint_msg){.x = place->x, .y = place->y};
+    }
+    head->certificate = (int32_t)aisle_path_certificate(head);
+    size_t size = 0;
+    aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, head, self->refusal[kind], AISLE_REFUSAL_BYTES, &size);
+    AISLE_ASSERT(st == AISLE_OK);
+    queue(self, kind, self->refusal[kind], size, NULL);
+    self->counters[AISLE_COUNTER_NO_PATHS]++;
+}
+
+// Renewing the lease changes nothing else, so the proof of the bytes stays good.
+static void put_lease(aisle_planner *self, aisle_proof *proof) {
+    size_t utime = 0;
+    size_t valid = 0;
+    bool found = aisle_msg_field_offset(AISLE_MSG_PATH, "utime", &utime) &&
+                 aisle_msg_field_offset(AISLE_MSG_PATH, "valid_until_utime", &valid);
+    AISLE_ASSERT(found);
+    aisle_msg_put_int64(proof->bytes + utime, self->now_us);
+    aisle_msg_put_int64(proof->bytes + valid, self->now_us + AISLE_LEASE_US);
+}
+
+void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
+    self->counters[AISLE_COUNTER_PATHS]++;
+    if (request->is_query) {
+        queue(self, AISLE_EVENT_REPLY, proof->bytes, proof->size, &proof->stamp);
+        return;
+    }
+    aisle_mission *mission = &self->mission;
+    memcpy(mission->current.bytes, proof->bytes, proof->size);
+    mission->current.size = proof->size;
+    mission->current.stamp = proof->stamp;
+    mission->has_path = true;
+    mission->cause = 0;
+    aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, mission->path, NULL);
+    AISLE_ASSERT(st == AISLE_OK);
+    self->path_revision = mission->path->path_revision;
+    aisle_planner_renew(self);
+}
+
+void aisle_planner_renew(aisle_planner *self) {
+    aisle_mission *mission = &self->mission;
+    put_lease(self, &mission->current);
+    queue(self, AISLE_EVENT_PATH, mission->current.bytes, mission->current.size, &mission->current.stamp);
+    self->lease_due_us = self->now_us + AISLE_LEASE_RESEND_US;
+}
+
+void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id) {
+    if (self->mission.has_path) {
+        aisle_refusal why = {cause, id, 0.0F};
+        aisle_planner_refuse(self, &self->mission.request, &why, NULL, 0);
+    }
+    self->mission.cause = cause;
+    self->mission.cause_id = id;
+}

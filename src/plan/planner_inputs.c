@@ -1,0 +1,335 @@
+#include "plan/planner_state.h"
+
+#include "base/check.h"
+
+#include <math.h>
+#include <string.h>
+
+bool aisle_planner_is_busy(const aisle_planner *self) { return self->planning || self->building || self->queue_count > 0; }
+
+bool aisle_planner_pose_is_fresh(const aisle_planner *self) {
+    double timeout = self->has_vehicle ? self->vehicle.pose_timeout : 0.2;
+    return self->has_pose && (double)(self->now_us - self->pose_at_us) <= timeout * 1e6;
+}
+
+aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id) {
+    self->counters[AISLE_COUNTER_REJECTED]++;
+    self->cause = cause;
+    self->cause_id = id;
+    return AISLE_ERR_DATA;
+}
+
+static aisle_status duplicate(aisle_planner *self) {
+    self->counters[AISLE_COUNTER_DUPLICATES]++;
+    return AISLE_OK;
+}
+
+static aisle_status enqueue(aisle_planner *self, const aisle_request *request) {
+    if (self->queue_count >= self->config.limits.requests) {
+        return AISLE_BUSY;
+    }
+    uint32_t at = (self->queue_head + self->queue_count) % self->config.limits.requests;
+    self->queue[at] = *request;
+    self->queue_count++;
+    return AISLE_OK;
+}
+
+// ---- layout
+
+static aisle_status take_layout(aisle_planner *self, const aisle_input *input) {
+    if (aisle_planner_is_busy(self)) {
+        return AISLE_BUSY;
+    }
+    aisle_refusal why = {0, 0, 0.0F};
+    aisle_status st;
+    if (input->kind == AISLE_INPUT_LAYOUT) {
+        st = aisle_layout_take_part(self->layout, input->as.layout, &why);
+    } else if (input->kind == AISLE_INPUT_GRID) {
+        st = aisle_layout_take_tile(self->layout, input->as.grid, &why);
+    } else {
+        st = aisle_layout_take_patch(self->layout, input->as.layout_patch, &why);
+    }
+    if (st == AISLE_ERR_DATA) {
+        return aisle_planner_reject(self, why.cause, why.id);
+    }
+    if (aisle_layout_is_staged(self->layout)) {
+        aisle_layout_commit(self->layout);
+        self->building = true;
+        aisle_planner_revoke(self, AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_revision(self->layout));
+    } else if (st == AISLE_OK) {
+        return duplicate(self);
+    }
+    return st;
+}
+
+// ---- vehicle
+
+// Same body and limits, whatever the time it was sent at? Compared as encoded: structs have padding.
+static bool same_vehicle(const aisle_vehicle_msg *a, const aisle_vehicle_msg *b) {
+    uint8_t bytes[2][1024];
+    size_t size[2] = {0, 0};
+    if (aisle_msg_encode(AISLE_MSG_VEHICLE, a, bytes[0], sizeof bytes[0], &size[0]) != AISLE_OK ||
+        aisle_msg_encode(AISLE_MSG_VEHICLE, b, bytes[1], sizeof bytes[1], &size[1]) != AISLE_OK) {
+        return false;
+    }
+    size_t utime = AISLE_MSG_FINGERPRINT_SIZE + 8U; // skip the fingerprint and utime
+    return size[0] == size[1] && memcmp(bytes[0] + utime, bytes[1] + utime, size[0] - utime) == 0;
+}
+
+static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *msg) {
+    if (aisle_planner_is_busy(self)) {
+        return AISLE_BUSY;
+    }
+    bool sent_before = self->has_vehicle && self->vehicle_msg->utime != 0; // 0: the settings' one
+    if (sent_before && msg->vehicle_revision < self->vehicle.revision) {
+        return aisle_planner_reject(self, AISLE_STATUS_OUTDATED, msg->vehicle_revision);
+    }
+    if (sent_before && msg->vehicle_revision == self->vehicle.revision) {
+        return same_vehicle(msg, self->vehicle_msg)
+                   ? duplicate(self)
+                   : aisle_planner_reject(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
+    }
+    aisle_refusal why = {0, 0, 0.0F};
+    if (aisle_vehicle_from_msg(msg, &self->vehicle, &why) != AISLE_OK) {
+        return aisle_planner_reject(self, why.cause, why.id);
+    }
+    *self->vehicle_msg = *msg;
+    self->has_vehicle = true;
+    aisle_planner_revoke(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
+    aisle_planner_replan(self);
+    return AISLE_OK;
+}
+
+// ---- pose
+
+static void note_progress(aisle_planner *self) {
+    aisle_mission *mission = &self->mission;
+    while (mission->wanted && mission->has_path && mission->reached < (uint32_t)mission->request.num_goals) {
+        const aisle_goal_msg *goal = &mission->request.goals[mission->reached];
+        double away = aisle_vec2_distance(aisle_vec2_of(self->pose.x, self->pose.y), aisle_vec2_of(goal->x, goal->y));
+        double tolerance = goal->tolerance_xy > 0.0F ? (double)goal->tolerance_xy : 0.05;
+        bool rests = fabs((double)self->pose.vx) < 0.01 && fabs((double)self->pose.omega) < 0.01;
+        if (away > tolerance || !rests) {
+            return;
+        }
+        mission->reached++;
+        if (mission->reached == (uint32_t)mission->request.num_goals) {
+            mission->wanted = false;
+            mission->has_path = false;
+        }
+    }
+}
+
+static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
+    if (fabs(msg->x) > AISLE_SHAPE_COORD_MAX || fabs(msg->y) > AISLE_SHAPE_COORD_MAX || fabs(msg->theta) > 1e4) {
+        return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, msg->seq);
+    }
+    if (self->has_pose && msg->utime < self->pose.utime) {
+        return aisle_planner_reject(self, AISLE_STATUS_OUTDATED, msg->seq);
+    }
+    if (self->has_pose && msg->utime == self->pose.utime && msg->seq == self->pose.seq) {
+        return duplicate(self);
+    }
+    self->pose = *msg;
+    self->pose_at_us = self->now_us;
+    self->has_pose = true;
+    note_progress(self);
+    return AISLE_OK;
+}
+
+// ---- requests
+
+// Nearest goal first, by beelines; the planner's answer names the order by goal_id.
+static void order_goals(aisle_request *request) {
+    aisle_vec2 at = {request->start.x, request->start.y};
+    for (int16_t i = 0; i < request->num_goals; i++) {
+        int16_t best = i;
+        double least = -1.0;
+        for (int16_t k = i; k < request->num_goals; k++) {
+            double away = aisle_vec2_distance(at, aisle_vec2_of(request->goals[k].x, request->goals[k].y));
+            if (least < 0.0 || away < least) {
+                least = away;
+                best = k;
+            }
+        }
+        aisle_goal_msg nearest = request->goals[best];
+        request->goals[best] = request->goals[i];
+        request->goals[i] = nearest;
+        at = aisle_vec2_of(nearest.x, nearest.y);
+    }
+}
+
+static bool count_is_bad(int16_t num_goals) { return num_goals < 0 || num_goals > AISLE_GOAL_LIST_MAX_GOALS; }
+
+static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) {
+    if (count_is_bad(msg->num_goals)) {
+        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->num_goals);
+    }
+    aisle_request request = {.is_query = true,
+                             .query_id = msg->query_id,
+                             .map_id = msg->map_id,
+                             .start = msg->start,
+                             .options = msg->options,
+                             .num_goals = msg->num_goals};
+    memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
+    if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {
+        order_goals(&request);
+    }
+    return enqueue(self, &request);
+}
+
+static aisle_goal_msg pose_as_start(const aisle_planner *self) {
+    return (aisle_goal_msg){.x = self->pose.x, .y = self->pose.y, .theta = self->pose.theta};
+}
+
+static bool same_goals(const aisle_request *a, const aisle_request *b) {
+    uint8_t bytes[2][128];
+    size_t size[2] = {0, 0};
+    if (a->num_goals != b->num_goals || a->map_id != b->map_id) {
+        return false;
+    }
+    for (int16_t i = 0; i < a->num_goals; i++) {
+        if (aisle_msg_encode_body(AISLE_MSG_GOAL, &a->goals[i], bytes[0], sizeof bytes[0], &size[0]) != AISLE_OK ||
+            aisle_msg_encode_body(AISLE_MSG_GOAL, &b->goals[i], bytes[1], sizeof bytes[1], &size[1]) != AISLE_OK ||
+            size[0] != size[1] || memcmp(bytes[0], bytes[1], size[0]) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static aisle_status cancel_mission(aisle_planner *self) {
+    aisle_planner_revoke(self, 0, 0);
+    self->mission.wanted = false;
+    self->mission.has_path = false;
+    return AISLE_OK;
+}
+
+static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *msg) {
+    if (count_is_bad(msg->num_goals)) {
+        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->num_goals);
+    }
+    aisle_request request = {.goal_list_id = msg->goal_list_id,
+                             .goal_list_revision = msg->goal_list_revision,
+                             .map_id = msg->map_id,
+                             .pose_utime = self->has_pose ? self->pose.utime : 0,
+                             .start = pose_as_start(self),
+                             .options = msg->options,
+                             .num_goals = msg->num_goals};
+    memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
+    if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {
+        order_goals(&request);
+    }
+    const aisle_request *held = &self->mission.request;
+    if (self->mission.wanted && held->goal_list_id == msg->goal_list_id) {
+        if (msg->goal_list_revision < held->goal_list_revision) {
+            return aisle_planner_reject(self, AISLE_STATUS_OUTDATED, msg->goal_list_revision);
+        }
+        if (msg->goal_list_revision == held->goal_list_revision) {
+            return same_goals(held, &request)
+                       ? duplicate(self)
+                       : aisle_planner_reject(self, AISLE_STATUS_CONFLICT, msg->goal_list_revision);
+        }
+    }
+    if (msg->num_goals == 0) {
+        return cancel_mission(self);
+    }
+    aisle_status st = enqueue(self, &request);
+    if (st == AISLE_OK) {
+        self->mission.request = request;
+        self->mission.wanted = true;
+        self->mission.reached = 0;
+    }
+    return st;
+}
+
+void aisle_planner_replan(aisle_planner *self) {
+    if (!self->mission.wanted) {
+        return;
+    }
+    aisle_request request = self->mission.request;
+    request.start = pose_as_start(self);
+    request.pose_utime = self->pose.utime;
+    int16_t left = (int16_t)(request.num_goals - (int16_t)self->mission.reached);
+    memmove(request.goals, request.goals + self->mission.reached, (size_t)left * sizeof request.goals[0]);
+    request.num_goals = left;
+    aisle_status st = enqueue(self, &request); // the queue is empty when a layout or vehicle takes effect
+    AISLE_ASSERT(st == AISLE_OK);
+    self->mission.request = request;
+    self->mission.reached = 0;
+}
+
+// ---- obstacles and commands
+
+// Moving obstacles are not planned around yet: while any is reported no path is out (it fails safe).
+static aisle_status take_obstacles(aisle_planner *self, const aisle_obstacles_msg *msg) {
+    if (msg->source < 0 || msg->source >= AISLE_OBSTACLES_MAX_SOURCES) {
+        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->source);
+    }
+    self->obstacle_id[msg->source] = 0;
+    if (msg->num_obstacles > 0) {
+        int32_t id = msg->obstacles[0].id;
+        self->obstacle_id[msg->source] = id != 0 ? id : -1;
+        aisle_planner_revoke(self, AISLE_STATUS_BLOCKED_BY, id);
+    }
+    return AISLE_OK;
+}
+
+static aisle_status take_command(aisle_planner *self, const aisle_command_msg *msg) {
+    switch (msg->command) {
+    case AISLE_COMMAND_HOLD:
+        self->held = true;
+        break;
+    case AISLE_COMMAND_RESUME:
+        self->held = false;
+        self->lease_due_us = self->now_us;
+        break;
+    case AISLE_COMMAND_CANCEL:
+        (void)cancel_mission(self);
+        break;
+    case AISLE_COMMAND_RESEND:
+        self->lease_due_us = self->now_us;
+        break;
+    default:
+        return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, msg->command);
+    }
+    self->command_id = msg->command_id;
+    return AISLE_OK;
+}
+
+static aisle_status dispatch(aisle_planner *self, const aisle_input *input) {
+    switch (input->kind) {
+    case AISLE_INPUT_LAYOUT:
+    case AISLE_INPUT_LAYOUT_PATCH:
+    case AISLE_INPUT_GRID:
+        return take_layout(self, input);
+    case AISLE_INPUT_VEHICLE:
+        return take_vehicle(self, input->as.vehicle);
+    case AISLE_INPUT_POSE:
+        return take_pose(self, input->as.pose);
+    case AISLE_INPUT_GOALS:
+        return take_goals(self, input->as.goals);
+    case AISLE_INPUT_QUERY:
+        return take_query(self, input->as.query);
+    case AISLE_INPUT_OBSTACLES:
+        return take_obstacles(self, input->as.obstacles);
+    case AISLE_INPUT_COMMAND:
+        return take_command(self, input->as.command);
+    default:
+        return AISLE_ERR_ARG;
+    }
+}
+
+aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const aisle_input *input) {
+    if (input == NULL || input->as.layout == NULL) {
+        return AISLE_ERR_ARG;
+    }
+    if (now_us > self->now_us) {
+        self->now_us = now_us;
+    }
+    aisle_status st = dispatch(self, input);
+    if (st == AISLE_OK || st == AISLE_PARTIAL) {
+        self->counters[AISLE_COUNTER_INPUTS]++;
+    }
+    return st;
+}

@@ -1,0 +1,82 @@
+// planner_state.h - what lies behind planner.h; for planner*.c alone. Level 4.
+//
+// planner.c: memory, step, events, status. planner_inputs.c: what each message does. planner_answer.c: paths and reasons out.
+#ifndef AISLE_PLAN_PLANNER_STATE_H
+#define AISLE_PLAN_PLANNER_STATE_H
+
+#include "aisle/planner.h"
+#include "plan/route.h"
+
+#define AISLE_REFUSAL_BYTES 512U // of an encoded path_t with at most one waypoint
+#define AISLE_MEMORY_ROWS 8U
+
+typedef struct aisle_outgoing { // a path_t waiting to be pulled
+    const uint8_t *bytes;
+    size_t size;
+    const aisle_stamp *stamp; // NULL: a refusal, nothing to drive
+    bool waiting;
+} aisle_outgoing;
+
+typedef struct aisle_mission { // the goal list in hand
+    aisle_request request;
+    bool wanted;   // there is one, not yet reached or cancelled
+    bool has_path; // current holds its proved path
+    aisle_proof current;
+    aisle_path_msg *path; // current, decoded
+    uint32_t reached;     // goals
+    int16_t cause;        // why there is no path
+    int32_t cause_id;
+} aisle_mission;
+
+struct aisle_planner {
+    aisle_config config; // limits resolved
+    int64_t now_us;
+    aisle_layout *layout;
+    bool building; // a committed layout is not in force yet
+    aisle_vehicle vehicle;
+    aisle_vehicle_msg *vehicle_msg; // as taken, to tell a duplicate from a conflict
+    bool has_vehicle;
+    aisle_pose_msg pose;
+    int64_t pose_at_us; // when it was submitted
+    bool has_pose;
+    bool held;
+    int32_t obstacle_id[AISLE_OBSTACLES_MAX_SOURCES]; // a moving obstacle some source reports; 0 = none
+    int32_t command_id;
+    aisle_request *queue; // [limits.requests] ring
+    uint32_t queue_head, queue_count;
+    aisle_route *route;
+    bool planning;
+    aisle_mission mission;
+    int32_t path_revision;
+    aisle_path_msg *head; // of answers; waypoints unused but the one of a refusal
+    uint8_t *refusal[2];  // [AISLE_REFUSAL_BYTES] for PATH and REPLY
+    aisle_outgoing out[2]; // by aisle_event_kind
+    int64_t lease_due_us;
+    int16_t cause; // last refused input
+    int32_t cause_id;
+    int64_t counters[AISLE_COUNTER_COUNT];
+    aisle_memory_row rows[AISLE_MEMORY_ROWS];
+    uint32_t row_count;
+};
+
+// planner_answer.c
+
+// Queues a path_t of status NONE; place may be NULL.
+void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
+                          const aisle_vec2 *place, uint32_t work_units);
+// Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission.
+void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);
+// Queues the mission's path once more with its lease renewed.
+void aisle_planner_renew(aisle_planner *self);
+// Ends the mission's path: a revocation if one was out.
+void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id);
+
+// planner_inputs.c
+
+bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
+bool aisle_planner_pose_is_fresh(const aisle_planner *self);
+// Puts the mission's goals into the queue again from the present pose.
+void aisle_planner_replan(aisle_planner *self);
+// AISLE_ERR_DATA, with the cause kept for status().
+aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id);
+#endif
