@@ -107,7 +107,7 @@ def add_leg_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--start", metavar="X,Y[,TH]")
     group.add_argument("--goal", action="append", metavar="X,Y[,TH]", help="several: visited in order")
     group.add_argument("--goals", type=Path, metavar="FILE", help="CSV of start_x,start_y,goal_x,goal_y: a query a row")
-    group.add_argument("--scenario", type=Path, metavar="FILE", help="a query for each leg of this scenario")
+    group.add_argument("--scenario", type=Path, metavar="FILE", help="a query for each leg of this scenario (and its robot)")
     group.add_argument("--any-heading", action="store_true", help="at every goal (the default where TH is not given)")
     group.add_argument("--map-id", type=int, metavar="N", help="default: the map held (1 with --log)")
 
@@ -124,7 +124,7 @@ def add_plan_options(parser: argparse.ArgumentParser) -> None:
 def legs_of(args: argparse.Namespace) -> list[Leg]:
     if args.goals is not None:
         return read_goals(args.goals)
-    if args.scenario is not None:
+    if args.scenario is not None and args.start is None:
         scenario = read_scenario(args.scenario)
         stops = [scenario.start, *scenario.goals]
         return [Leg(str(i + 1), a, [b]) for i, (a, b) in enumerate(zip(stops, stops[1:]))]

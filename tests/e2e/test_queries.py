@@ -1,0 +1,148 @@
+"""The main job: a map in, proved paths or reasons out, judged by the independent checker."""
+
+import json
+import math
+
+import pytest
+from aisle import path_t, status_t
+from aisle_tools import query, vehicle
+from aisle_tools.bus import Recording
+from aisle_tools.check import Obstacles, check_path
+from aisle_tools.rosmap import read_world
+from aisle_tools.scenario import read_scenario
+
+MAP = "aws_small_warehouse"
+SHORTEST_WORST = 1.05  # of the exact optimum, disc robots, margin none
+
+
+def judge(log, prefix, world):
+    """Every reply of the log through the independent checker; how many paths there were."""
+    recording = Recording(log, prefix)
+    body = vehicle.body(recording.vehicle)
+    obstacles = Obstacles(world)
+    count = 0
+    for reply in recording.replies:
+        if reply.status == path_t.OK:
+            report = check_path(reply, obstacles, body, recording.queries[reply.query_id])
+            assert report.ok, f"query {reply.query_id}: {report.faults}"
+            assert report.clearance >= body.margin - 1e-6
+            count += 1
+    return count
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [["--radius", "0.3", "--margin", "-1"], ["--radius", "0.3"], ["--footprint", "0.7x0.4", "--margin", "0.05"]],
+)
+@pytest.mark.parametrize("objective", ["safest", "shortest"])
+def test_every_pair_of_a_real_map_gets_a_path_that_keeps_the_margin(daemon, data, tmp_path, shape, objective):
+    yaml, goals = data / "ros_maps" / f"{MAP}.yaml", data / "ros_maps" / f"{MAP}.goals.csv"
+    daemon.aisle("map", yaml)
+    daemon.aisle("vehicle", *shape)
+    log = tmp_path / "replies.log"
+    out = daemon.aisle("query", "--goals", goals, "--map", yaml, "--objective", objective, "--save", log, *shape)
+    assert out.count(" OK ") == 5
+    assert judge(log, daemon.prefix, read_world(yaml)) == 5
+    for reply in Recording(log, daemon.prefix).replies:
+        straight = reply.waypoints[0], reply.waypoints[-1]
+        beeline = math.hypot(straight[1].x - straight[0].x, straight[1].y - straight[0].y)
+        assert beeline * (1.0 - 1e-6) - 0.06 <= reply.length_bound * (1.0 + 1e-6) + 0.06 or reply.length_bound == 0.0
+        assert reply.length_bound <= reply.length
+    assert "0 at fault" in daemon.aisle("check", log, "--map", yaml)
+
+
+@pytest.mark.parametrize("name", ["barrier_1", "barrier_2", "field_12_disc", "storage_lr", "field_8_two"])
+def test_shortest_paths_of_scenarios_are_close_to_the_optimum(daemon, data, tmp_path, name):
+    path = data / "scenarios" / f"{name}.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    log = tmp_path / "replies.log"
+    daemon.aisle("query", "--scenario", path, "--objective", "shortest", "--save", log)
+    scenario = read_scenario(path)
+    legs = json.loads((data / "scenarios" / "optimum.json").read_text())[name]["legs"]
+    assert judge(log, daemon.prefix, scenario.world) == len(legs)
+    for reply, leg in zip(Recording(log, daemon.prefix).replies, legs):
+        assert leg["lower"] * (1.0 - 1e-5) - 0.06 <= reply.length <= leg["upper"] * SHORTEST_WORST
+        assert reply.length_bound <= leg["upper"] * (1.0 + 1e-5)
+
+
+def test_refusals_tell_the_reason(daemon, data):
+    yaml = data / "ros_maps" / f"{MAP}.yaml"
+    goals = query.read_goals(yaml.with_suffix(".goals.csv"))
+    good = ",".join(str(v) for v in goals[0].start)
+    assert "NO_LAYOUT" in daemon.aisle("query", "--start", good, "--goal", good, expect=1)
+    daemon.aisle("map", yaml)
+    daemon.aisle("vehicle", "--radius", "0.3")
+    wall = find_wall(read_world(yaml))
+    assert "START_OCCUPIED" in daemon.aisle("query", "--start", wall, "--goal", good, expect=1)
+    assert "GOAL_OCCUPIED" in daemon.aisle("query", "--start", good, "--goal", wall, expect=1)
+    assert "GOAL_OUTSIDE" in daemon.aisle("query", "--start", good, "--goal", "500,500", expect=1)
+    assert "MAP_MISMATCH" in daemon.aisle("query", "--start", good, "--goal", good, "--map-id", "77", expect=1)
+    assert "outside the map" in daemon.aisle("query", "--start", good, "--goal", "500,500", "--map", yaml, expect=2)
+
+
+def find_wall(world):
+    row, column = world.grid.height // 2, int(world.grid.occupied[world.grid.height // 2].argmax())
+    x = world.grid.origin_x + (column + 0.5) * world.grid.resolution
+    y = world.grid.origin_y + (row + 0.5) * world.grid.resolution
+    return f"{x},{y}"
+
+
+def test_a_gap_too_narrow_is_named_with_its_width(daemon, data):
+    path = data / "scenarios" / "barrier_1.json"  # the opening is 1.2 m
+    daemon.aisle("map", path, "--margin", "0.5")
+    daemon.aisle("vehicle", "--radius", "0.65", "--margin", "-1")
+    line = daemon.aisle("query", "--start", "2,2", "--goal", "12,4", "--json", expect=1)
+    answer = json.loads(line)
+    assert answer["status"] == "NONE" and answer["cause"] in ("TOO_NARROW", "NO_PATH")
+    assert answer["cause_value"] == pytest.approx(1.2, abs=0.11)
+
+
+def test_budget_too_small_is_not_called_a_proof(daemon, data):
+    path = data / "scenarios" / "clutter_50.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    answer = json.loads(daemon.aisle("query", "--scenario", path, "--work-units", "50", "--json", expect=1))
+    assert answer["cause"] == "BUDGET"
+
+
+def test_same_question_same_bytes(daemon, data, tmp_path):
+    path = data / "scenarios" / "field_12_disc.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    answers = []
+    for i in range(2):
+        log = tmp_path / f"{i}.log"
+        daemon.aisle("query", "--scenario", path, "--save", log)
+        answers.append(Recording(log, daemon.prefix).replies[0])
+    assert [w.encode() for w in answers[0].waypoints] == [w.encode() for w in answers[1].waypoints]
+    assert answers[0].work_units == answers[1].work_units
+    assert answers[0].query_id != answers[1].query_id
+
+
+def test_several_goals_are_visited_in_order(daemon, data, tmp_path):
+    path = data / "scenarios" / "field_8_two.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    log = tmp_path / "r.log"
+    daemon.aisle("query", "--start", "1,1", "--goal", "9,8", "--goal", "19,19", "--save", log, "--scenario", path)
+    daemon.aisle(
+        "query", "--start", "1,1", "--goal", "9,8", "--goal", "19,19", "--save", log, "--radius", "0.3", "--margin", "-1"
+    )
+    assert judge(log, daemon.prefix, read_scenario(path).world) == 1
+    reply = Recording(log, daemon.prefix).replies[0]
+    assert [w.goal_id for w in reply.waypoints if w.flags & 8] == [1, 2]
+
+
+def test_newer_map_takes_the_place_of_the_older_one(daemon, data):
+    first = data / "scenarios" / "field_4_disc.json"
+    second = data / "scenarios" / "barrier_1.json"
+    daemon.aisle("map", first, "--map-revision", "5")
+    assert (daemon.fresh_status().map_id, daemon.status.map_revision) == (1, 5)
+    out = daemon.aisle("map", second, "--map-revision", "4", "--timeout", "4", expect=2)
+    assert "OUTDATED" in out
+    out = daemon.aisle("map", second, "--map-revision", "5", "--timeout", "4", expect=2)
+    assert "CONFLICT" in out
+    daemon.aisle("map", second)
+    assert daemon.fresh_status().map_revision > 5
+    assert daemon.status.cause != status_t.NO_LAYOUT
