@@ -200,8 +200,10 @@ static void test_every_message_comes_back_as_it_went(void) {
                 size_t size = encoded(type, shape, seed), expected = 0;
                 size_t n = fill_list(type, &msg, scalars, &expected);
                 TEST_ASSERT_EQUAL_size_t(expected, size);
+                fault = (aisle_msg_fault){AISLE_MSG_FAULT_TRAILING, "?", 1};
                 TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_msg_decode(type, bytes, size, &back, &fault));
                 TEST_ASSERT_EQUAL_INT(AISLE_MSG_FAULT_NONE, fault.kind);
+                TEST_ASSERT_EQUAL_STRING("", fault.field);
                 for (size_t i = 0; i < n; i++) {
                     TEST_ASSERT_EQUAL_INT(0, memcmp((uint8_t *)&msg + scalars[i].offset,
                                                     (uint8_t *)&back + scalars[i].offset,
@@ -575,6 +577,16 @@ static void test_a_buffer_of_max_size_is_never_too_small(void) {
     }
 }
 
+static void test_the_tables_know_the_least_and_the_most_a_body_takes(void) {
+    for (uint32_t type = 0; type < AISLE_MSG_COUNT; type++) {
+        TEST_ASSERT_EQUAL_size_t(8U + aisle_wire_types[type].body_min, encoded(type, FILL_EMPTY, 3));
+        if (8U + aisle_wire_types[type].body_max <= AISLE_MSG_DATAGRAM_MAX) {
+            TEST_ASSERT_EQUAL_size_t(8U + aisle_wire_types[type].body_max, encoded(type, FILL_FULL_INNER, 3));
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(68 + 828 * 271, aisle_wire_types[AISLE_MSG_LAYOUT].body_max);
+}
+
 static void test_a_body_is_the_message_without_its_fingerprint(void) {
     for (uint32_t type = 0; type < AISLE_MSG_COUNT; type++) {
         size_t size = encoded(type, FILL_RANDOM, 13), body = 0;
@@ -658,6 +670,7 @@ int main(void) {
     RUN_TEST(test_encoding_needs_its_size_and_writes_no_byte_more);
     RUN_TEST(test_more_than_a_datagram_is_refused_however_large_the_buffer);
     RUN_TEST(test_a_buffer_of_max_size_is_never_too_small);
+    RUN_TEST(test_the_tables_know_the_least_and_the_most_a_body_takes);
     RUN_TEST(test_a_body_is_the_message_without_its_fingerprint);
     RUN_TEST(test_a_body_is_what_its_holder_carries);
     RUN_TEST(test_members_before_the_first_array_have_an_offset);

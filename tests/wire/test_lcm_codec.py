@@ -45,6 +45,16 @@ class Generated(unittest.TestCase):
         self.assertIn("#define AISLE_A_MAX_LEGS 9\n", header)
         self.assertIn("float leg[AISLE_A_MAX_LEGS][2];", header)
 
+    def test_each_count_keeps_its_value_in_a_slot_of_its_own(self):
+        self.header_of("struct a_t { int8_t num_b; int8_t num_c; byte b[num_b]; byte c[num_c]; byte more[num_b];"
+                       " const int8_t MAX_B = 3; const int8_t MAX_C = 5; }")
+        tables = (self.root / "out/t.c").read_text(encoding="utf-8")
+        for name, bound, slots in (("num_b", 3, "0, AISLE_WIRE_NO_SLOT"), ("num_c", 5, "1, AISLE_WIRE_NO_SLOT"),
+                                   ("b", 3, "AISLE_WIRE_NO_SLOT, 0"), ("c", 5, "AISLE_WIRE_NO_SLOT, 1"),
+                                   ("more", 3, "AISLE_WIRE_NO_SLOT, 0")):
+            kind = "INT8" if name.startswith("num") else "BYTE"
+            self.assertIn(f'"{name}", offsetof(aisle_a_msg, {name}), 1, {bound}, AISLE_WIRE_{kind}, 0, {slots}', tables)
+
     def test_nested_struct_comes_first_whatever_the_order_of_files(self):
         inner, outer = "struct z_t { byte b; }", "struct a_t { z_t z[2]; }"
         for texts in ((inner, outer), (outer, inner)):
