@@ -53,13 +53,23 @@ class ClearanceField:
 
 
 def narrowest(field: ClearanceField, start: tuple[float, float], goal: tuple[float, float]) -> Place:
-    """The narrowest cell of the way that keeps widest: cost per metre clearance^-POWER, finite within obstacles."""
+    """The narrowest inner cell of the widest way; cost per metre clearance^-POWER, finite within obstacles."""
     parent = _widest_tree(field, field.cell(*start), field.cell(*goal))
     way = [field.cell(*goal)]
     while parent[way[-1]] is not None:
         way.append(parent[way[-1]])
-    row, column = min(way, key=lambda c: field.gap[c])
+    row, column = min(_inner(way, field), key=lambda c: field.gap[c])
     return Place(*field.centre(row, column), float(field.gap[row, column]))
+
+
+def _inner(way: list, field: ClearanceField) -> list:
+    """The way without its ends, where it only widens: a narrow start is not a gap."""
+    begin, end = 0, len(way) - 1
+    while begin < end and field.gap[way[begin + 1]] >= field.gap[way[begin]]:
+        begin += 1
+    while end > begin and field.gap[way[end - 1]] >= field.gap[way[end]]:
+        end -= 1
+    return way[begin : end + 1]
 
 
 def _widest_tree(field: ClearanceField, begin: tuple[int, int], end: tuple[int, int]) -> dict:

@@ -204,7 +204,9 @@ class Picture:
                 line.set_array(0.5 * (clearances[:-1] + clearances[1:]))
                 self.axes.add_collection(line)
             mappable = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
-            self.figure.colorbar(mappable, ax=self.axes, label="clearance of the footprint (m)", shrink=0.7, extend="max")
+            self.figure.colorbar(
+                mappable, ax=self.axes, label="clearance of the footprint (m)", shrink=0.7, aspect=45, extend="max"
+            )
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             self.figure.savefig(path, dpi=self.dpi)
