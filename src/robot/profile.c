@@ -2,14 +2,16 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "robot/curve.h"
 
 #include <stddef.h>
 #include <string.h>
 
 #define GRAVITY 9.80665   // m/s2
 #define CHORD_EXCESS 1e-6 // relative: curvature travels as float
-#define STRAY_MAX 0.02    // m, see the header
+#define OVERREACH 0.05    // m, see the header
 #define CUTS_MAX 64.0
+#define TOUCH 1e-6 // m, more than all rounding of places and gaps together
 
 typedef struct piece { // between two waypoints
     const aisle_waypoint_msg *from, *to;
@@ -47,24 +49,18 @@ static double chord_of(const aisle_waypoint_msg *from, const aisle_waypoint_msg 
     return aisle_vec2_distance(aisle_vec2_of(from->x, from->y), aisle_vec2_of(to->x, to->y));
 }
 
-// Half the angle of the minor arc, signed as the curvature: asin(k c / 2).
-static double half_angle(double chord, double curvature) {
-    const double sine = aisle_clamp(0.5 * curvature * chord, -1.0, 1.0);
-    return aisle_atan2(sine, sqrt(1.0 - sine * sine));
-}
-
 double aisle_piece_length(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
     if (has(from, AISLE_WAYPOINT_TURN_IN_PLACE)) {
         return 0.0;
     }
     const double chord = chord_of(from, to);
     const double curvature = (double)to->curvature;
-    const double sine = fabs(0.5 * curvature * chord);
+    const double sine = aisle_min(fabs(0.5 * curvature * chord), 1.0); // of half the arc's angle
     if (sine < 0.01) { // asin(s) / s; the next term is below 5e-14, and a curvature of 0 needs no case of its own
         const double s2 = sine * sine;
         return chord * (1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0)));
     }
-    return fabs(2.0 * half_angle(chord, curvature) / curvature);
+    return 2.0 * aisle_atan2(sine, sqrt(1.0 - sine * sine)) / fabs(curvature);
 }
 
 double aisle_piece_turn(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
@@ -78,23 +74,6 @@ static piece piece_at(const aisle_waypoint_msg *w, uint32_t i) {
 
 static bool is_turn(const piece *p) {
     return has(p->from, AISLE_WAYPOINT_TURN_IN_PLACE);
-}
-
-// The pose a part u in [0, 1] of the way along. On an arc of half angle h the point at u lies from the start at the
-// chord's direction turned by -h (1 - u), at sin(h u) / sin(h) of the chord.
-static aisle_pose2 pose_along(const piece *p, double u) {
-    const aisle_vec2 start = {p->from->x, p->from->y};
-    const aisle_vec2 chord = aisle_vec2_sub(aisle_vec2_of(p->to->x, p->to->y), start);
-    const double h = half_angle(aisle_vec2_length(chord), (double)p->to->curvature);
-    double sine, cosine, sine_hu, sine_h, unused;
-    aisle_sincos(-h * (1.0 - u), &sine, &cosine);
-    aisle_sincos(h * u, &sine_hu, &unused);
-    aisle_sincos(h, &sine_h, &unused);
-    // Below 1e-3 the quotient by its series: the sines' absolute error would show.
-    const double part = fabs(h) < 1e-3 ? u * (1.0 + h * h * (1.0 - u * u) / 6.0) : sine_hu / sine_h;
-    const aisle_vec2 turned = {chord.x * cosine - chord.y * sine, chord.x * sine + chord.y * cosine};
-    const aisle_vec2 at = aisle_vec2_add(start, aisle_vec2_scale(turned, part));
-    return (aisle_pose2){at.x, at.y, p->from->theta + u * p->turn};
 }
 
 // ---- what is fit to be worked on
@@ -134,15 +113,29 @@ static bool path_is_fit(const aisle_waypoint_msg *w, uint32_t n, const float *dw
 
 // ---- limits of pieces
 
+// Farthest vertex from the origin: what a turn swings round. The rounding turns with its centre.
+static double reach_of(const aisle_vehicle *vehicle) {
+    return vehicle->outer_radius - vehicle->radius;
+}
+
 // How far a body point may stray from the straight way between its ends: sagittas of the origin's arc and of the
 // rotation, |k| L^2 / 8 + r b^2 / 8 (a point's second derivative along the piece is at most |k| L^2 + r b^2).
 static double stray_of(const aisle_vehicle *vehicle, const piece *p) {
-    const double reach = vehicle->outer_radius - vehicle->radius; // the rounding turns with its centre
-    return (fabs((double)p->to->curvature) * p->length * p->length + reach * p->turn * p->turn) / 8.0;
+    const double curvature = fabs((double)p->to->curvature);
+    return (curvature * p->length * p->length + reach_of(vehicle) * p->turn * p->turn) / 8.0;
+}
+
+// Into how many parts the piece is cut so that hull and stray reach at most OVERREACH beyond the ground covered. A
+// point of the hull is (1 - t) of body point p at the start and t of q at the end; the body point (1 - t) p + t q
+// passes within t (1 - t) |b| |p - q| <= r |b| / 2 plus the stray of it, and the hull is grown by the stray once more.
+static double cuts_of(const aisle_vehicle *vehicle, const piece *p, double stray) {
+    const double by_turn = reach_of(vehicle) * fabs(p->turn) / OVERREACH; // r |b| / cuts / 2 is half of it
+    const double by_stray = sqrt(4.0 * stray / OVERREACH);                // 2 stray / cuts^2 is the other
+    return aisle_min(floor(aisle_max(by_turn, by_stray)) + 1.0, CUTS_MAX);
 }
 
 static aisle_aabb box_of(const aisle_vehicle *vehicle, const piece *p) {
-    const double grow = vehicle->outer_radius + fabs((double)p->to->curvature) * p->length * p->length / 8.0;
+    const double grow = vehicle->outer_radius + TOUCH + fabs((double)p->to->curvature) * p->length * p->length / 8.0;
     const aisle_aabb ends = {{aisle_min(p->from->x, p->to->x), aisle_min(p->from->y, p->to->y)},
                              {aisle_max(p->from->x, p->to->x), aisle_max(p->from->y, p->to->y)}};
     return aisle_aabb_grow(ends, grow);
@@ -150,13 +143,14 @@ static aisle_aabb box_of(const aisle_vehicle *vehicle, const piece *p) {
 
 static bool may_touch(const aisle_vehicle *vehicle, const piece *p, const aisle_convex *zone) {
     const double stray = stray_of(vehicle, p);
-    const double cuts = aisle_min(floor(sqrt(stray / STRAY_MAX)) + 1.0, CUTS_MAX);
+    const double cuts = cuts_of(vehicle, p, stray);
     for (double cut = 0.0; cut < cuts; cut += 1.0) {
         aisle_vec2 places[2 * AISLE_SHAPE_VERTICES_MAX], hull[2 * AISLE_SHAPE_VERTICES_MAX];
-        (void)aisle_vehicle_place(vehicle, pose_along(p, cut / cuts), 0.0, places);
-        (void)aisle_vehicle_place(vehicle, pose_along(p, (cut + 1.0) / cuts), 0.0, places + vehicle->n);
+        (void)aisle_vehicle_place(vehicle, aisle_piece_at(p->from, p->to, cut / cuts), 0.0, places);
+        (void)aisle_vehicle_place(vehicle, aisle_piece_at(p->from, p->to, (cut + 1.0) / cuts), 0.0,
+                                  places + vehicle->n);
         const uint32_t size = aisle_convex_hull(places, 2U * vehicle->n, hull);
-        const aisle_convex swept = {hull, size, vehicle->radius + stray / (cuts * cuts)};
+        const aisle_convex swept = {hull, size, vehicle->radius + stray / (cuts * cuts) + TOUCH};
         if (!(aisle_convex_gap(&swept, zone) > 0.0)) {
             return true;
         }
@@ -170,7 +164,8 @@ static double zone_limit(const aisle_vehicle *vehicle, const aisle_layout *layou
          aisle_layout_walk_next(&walk, &zone);) {
         if (zone->kind == AISLE_POLYGON_SPEED_LIMIT && (double)zone->value < limit) {
             const aisle_convex shape = aisle_layout_zone_shape(layout, zone);
-            limit = may_touch(vehicle, p, &shape) ? aisle_max((double)zone->value, 0.0) : limit;
+            AISLE_ASSERT(zone->value > 0.0F); // the layout takes no others
+            limit = may_touch(vehicle, p, &shape) ? (double)zone->value : limit;
         }
     }
     return limit;

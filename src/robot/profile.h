@@ -5,10 +5,11 @@
 //
 // Limit of a piece, the least of: v_max (v_reverse_max if REVERSE); sqrt(lateral_a_max / |curvature|); omega_max *
 // length / |turn|; creep_speed if its clearance (waypoint i) is below creep_clearance; the value of every SPEED_LIMIT
-// zone it may touch. "May touch": the piece is cut so that no body point strays more than 0.02 m from the straight way
-// between its places at the ends of a cut (at most 64 cuts), and the hull of the footprint at both ends, grown by that
-// stray, is tested; so a zone farther away than 0.02 m (more only past 64 cuts) does not slow the vehicle and one that
-// is touched always does. Other kinds of polygons are not looked at.
+// zone it may touch. "May touch": the piece is cut, and at each cut the hull of the footprint at both ends, grown by
+// how far a body point may stray from the straight way between them, is tested. A zone that is touched always holds;
+// one farther than 0.05 m from the ground covered does not, unless that would take more than 64 cuts (64 are made
+// then). Straight pieces without a turn are exact to 1e-6 m. Other kinds of polygons, and turns on the spot, are not
+// looked at.
 //
 // Speed at a waypoint: at most the limits of both pieces; 0 at the first and last, at STOP, at both ends of a turn, and
 // where REVERSE begins or ends; then the greatest speeds with v1^2 <= v0^2 + 2 a_max L and v0^2 <= v1^2 + 2 d_max L on

@@ -1,8 +1,11 @@
 #include "robot/profile.h" // first: proves that the header stands alone
 
 #include "base/angle.h"
+#include "base/arena.h"
+#include "base/crc32.h"
 #include "base/rng.h"
 #include "unity.h"
+#include "wire/codec.h"
 
 #include <float.h>
 #include <stddef.h>
@@ -767,6 +770,259 @@ static void test_a_vehicle_slow_beyond_reason_is_refused_not_divided_by(void) {
     }
 }
 
+// ---- speed-limit zones
+
+enum { BLOCK = 1 << 20 };
+static aisle_layout layout;
+static aisle_layout_msg layout_msg;
+
+static void clear_zones(void) {
+    memset(&layout_msg, 0, sizeof layout_msg);
+    layout_msg.map_id = 1;
+    layout_msg.map_revision = 1;
+    layout_msg.num_parts = 1;
+    layout_msg.x_min = layout_msg.y_min = -20.0;
+    layout_msg.x_max = layout_msg.y_max = 20.0;
+    layout_msg.resolution = 1.0F;
+}
+
+static aisle_polygon_msg *add_zone(float value, double (*v)[2], int16_t n) {
+    aisle_polygon_msg *zone = &layout_msg.polygons[layout_msg.num_polygons++];
+    zone->id = layout_msg.num_polygons;
+    zone->kind = AISLE_POLYGON_SPEED_LIMIT;
+    zone->value = value;
+    zone->num_vertices = n;
+    memcpy(zone->vertices, v, (size_t)n * sizeof *v);
+    return zone;
+}
+
+static aisle_polygon_msg *add_box(float value, double x0, double y0, double x1, double y1) {
+    double box[4][2] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+    return add_zone(value, box, 4);
+}
+
+static void take_zones(void) { // layout_msg as the layout in force
+    static unsigned char block[BLOCK + AISLE_ARENA_ALIGN];
+    const aisle_limits limits = {.cells = 4096, .polygons = 16, .vertices = 256, .open_nodes = 1024, .requests = 1};
+    unsigned char *start = block;
+    start += (AISLE_ARENA_ALIGN - (uintptr_t)block % AISLE_ARENA_ALIGN) % AISLE_ARENA_ALIGN;
+    aisle_arena arena = aisle_arena_over(start, BLOCK);
+    memset(&layout, 0, sizeof layout);
+    aisle_layout_carve(&layout, &arena, &limits);
+    TEST_ASSERT_FALSE(arena.overflow);
+    uint32_t crc = 0;
+    for (int16_t i = 0; i < layout_msg.num_polygons; i++) {
+        uint8_t bytes[512];
+        size_t size;
+        TEST_ASSERT_EQUAL_INT(
+            AISLE_OK, aisle_msg_encode_body(AISLE_MSG_POLYGON, &layout_msg.polygons[i], bytes, sizeof bytes, &size));
+        crc = aisle_crc32(crc, bytes, size);
+    }
+    layout_msg.crc32 = (int32_t)crc;
+    layout_msg.total_polygons = layout_msg.num_polygons;
+    aisle_refusal why;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_layout_take_part(&layout, &layout_msg, &why));
+    aisle_layout_commit(&layout);
+    while (aisle_layout_build(&layout, 1000) == AISLE_BUSY) {
+    }
+    TEST_ASSERT_TRUE(aisle_layout_is_in_force(&layout));
+}
+
+static void fill_with_zones(void) {
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill(&vehicle, &layout, path, count, dwell, &sum));
+}
+
+// Quarter metres along x from 0 to 10 at y = 0; footprint 1.0 x 0.7 m.
+static void drive_line(void) {
+    take_zones();
+    count = 0;
+    (void)add(0.0, 0.0, 0.0);
+    add_line(10.0, 0.25);
+    fill_with_zones();
+}
+
+static bool is_slow(uint32_t i, float value) {
+    return path[i].v <= value;
+}
+
+static void test_a_zone_holds_wherever_the_footprint_touches_it_and_nowhere_else(void) {
+    clear_zones();
+    (void)add_box(0.4F, 5.05, 0.3, 5.35, 3.0); // beside the origin's way, under the footprint's flank
+    drive_line();
+    for (uint32_t i = 4; i < count - 4; i++) { // pieces from x - 0.5 = 5.35 back to x + 0.5 = 5.05: 4.55 to 5.85
+        TEST_ASSERT_EQUAL_INT(i >= 18 && i <= 24, is_slow(i, 0.4F));
+    }
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.4F, path[21].v);
+}
+
+static void test_a_zone_a_hand_away_does_nothing(void) {
+    clear_zones();
+    (void)add_box(0.4F, 5.05, 0.36, 5.35, 3.0);
+    drive_line();
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 1.5F, path[20].v);
+}
+
+static void test_a_zone_that_is_just_touched_holds(void) {
+    clear_zones();
+    (void)add_box(0.4F, 5.05, 0.35, 5.35, 3.0);
+    drive_line();
+    TEST_ASSERT_TRUE(is_slow(20, 0.4F));
+}
+
+static void test_the_lowest_of_all_limits_holds(void) {
+    clear_zones();
+    (void)add_box(0.8F, 2.0, -1.0, 8.0, 1.0);
+    (void)add_box(0.4F, 5.0, -1.0, 5.2, 1.0);
+    (void)add_box(0.6F, 4.0, -1.0, 6.0, 1.0);
+    (void)add_box(9.0F, -19.0, -19.0, 19.0, 19.0); // above v_max: no licence
+    drive_line();
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.4F, path[20].v);
+    for (uint32_t i = 0; i < count; i++) {
+        TEST_ASSERT_TRUE(path[i].v <= 1.5F && (i < 6 || i > 34 || is_slow(i, 0.8F)));
+    }
+}
+
+static void test_other_kinds_of_areas_set_no_limit(void) {
+    clear_zones();
+    add_box(0.0F, 4.0, -1.0, 6.0, 1.0)->kind = AISLE_POLYGON_DIRECTED;
+    add_box(0.4F, 4.0, -1.0, 6.0, 1.0)->kind = AISLE_POLYGON_PENALTY;
+    drive_line();
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 1.5F, path[20].v);
+}
+
+static void test_a_turn_on_the_spot_in_a_zone_takes_its_time_as_ever(void) {
+    clear_zones();
+    (void)add_box(0.01F, -2.0, -2.0, 2.0, 2.0);
+    take_zones();
+    set_flag(add(0.0, 0.0, 0.0), AISLE_WAYPOINT_TURN_IN_PLACE);
+    (void)add(0.0, 0.0, 1.0);
+    fill_with_zones();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, sum.duration);
+}
+
+static void test_a_layout_not_in_force_is_refused(void) {
+    static unsigned char block[BLOCK + AISLE_ARENA_ALIGN];
+    const aisle_limits limits = {.cells = 4096, .polygons = 16, .vertices = 256, .open_nodes = 1024, .requests = 1};
+    unsigned char *start = block;
+    start += (AISLE_ARENA_ALIGN - (uintptr_t)block % AISLE_ARENA_ALIGN) % AISLE_ARENA_ALIGN;
+    aisle_arena arena = aisle_arena_over(start, BLOCK);
+    memset(&layout, 0, sizeof layout);
+    aisle_layout_carve(&layout, &arena, &limits);
+    start_line();
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill(&vehicle, &layout, path, count, dwell, &sum));
+}
+
+static double brute_segment_point(aisle_vec2 a, aisle_vec2 b, aisle_vec2 p) {
+    const double sx = b.x - a.x, sy = b.y - a.y, square = sx * sx + sy * sy;
+    const double along = square > 0.0 ? fmin(1.0, fmax(0.0, ((p.x - a.x) * sx + (p.y - a.y) * sy) / square)) : 0.0;
+    return hypot(p.x - a.x - along * sx, p.y - a.y - along * sy);
+}
+
+static bool brute_inside(const aisle_vec2 *v, uint32_t n, aisle_vec2 p) {
+    bool inside = n >= 3;
+    for (uint32_t i = 0; i < n; i++) {
+        const aisle_vec2 a = v[i], b = v[(i + 1) % n];
+        inside = inside && (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) >= 0.0;
+    }
+    return inside;
+}
+
+// Gap between two polygons: 0 if a corner of one lies in the other (crossings without such are met between other
+// samples).
+static double brute_gap(const aisle_vec2 *a, uint32_t n, const aisle_vec2 *b, uint32_t m) {
+    double gap = 1e9;
+    for (uint32_t i = 0; i < n; i++) {
+        for (uint32_t k = 0; k < m; k++) {
+            gap = fmin(gap, brute_segment_point(a[i], a[(i + 1) % n], b[k]));
+            gap = fmin(gap, brute_segment_point(b[k], b[(k + 1) % m], a[i]));
+        }
+    }
+    for (uint32_t i = 0; i < n || i < m; i++) {
+        const bool in = brute_inside(b, m, a[i % n]) || brute_inside(a, n, b[i % m]);
+        gap = in ? 0.0 : gap;
+    }
+    return gap;
+}
+
+enum { SAMPLES = 400 };
+
+// Least gap between the footprint and the zone at SAMPLES + 1 poses of the one piece of the path.
+static double brute_least_gap(const aisle_vec2 *zone, uint32_t m) {
+    const aisle_waypoint_msg *from = &path[0], *to = &path[1];
+    const double k = (double)to->curvature, length = (double)judge_length(1);
+    const double turn = remainder(to->theta - from->theta, 2.0 * AISLE_PI);
+    const double dir = atan2(to->y - from->y, to->x - from->x) - 0.5 * k * length; // tangent at the start
+    double least = 1e9;
+    for (int i = 0; i <= SAMPLES; i++) {
+        const double u = (double)i / SAMPLES, l = u * length, angle = dir + k * l, theta = from->theta + u * turn;
+        const double x = fabs(k) > 1e-6 ? (sin(angle) - sin(dir)) / k : l * cos(dir);
+        const double y = fabs(k) > 1e-6 ? (cos(dir) - cos(angle)) / k : l * sin(dir);
+        aisle_vec2 body[AISLE_SHAPE_VERTICES_MAX];
+        for (uint32_t j = 0; j < vehicle.n; j++) {
+            const aisle_vec2 p = vehicle.footprint[j];
+            body[j] = aisle_vec2_of(from->x + x + p.x * cos(theta) - p.y * sin(theta),
+                                    from->y + y + p.x * sin(theta) + p.y * cos(theta));
+        }
+        least = fmin(least, brute_gap(body, vehicle.n, zone, m) - vehicle.radius);
+    }
+    return least;
+}
+
+static void random_zone(aisle_rng *rng, aisle_vec2 *zone, double (*v)[2], int16_t n) {
+    const double x = uniform(rng, -4.0, 4.0), y = uniform(rng, -4.0, 4.0), r = uniform(rng, 0.02, 1.5);
+    for (int16_t i = 0; i < n; i++) {
+        const double angle = 2.0 * AISLE_PI * (i + 0.7 * (double)aisle_rng_float(rng)) / n;
+        v[i][0] = x + r * cos(angle);
+        v[i][1] = y + r * sin(angle);
+        zone[i] = aisle_vec2_of(v[i][0], v[i][1]);
+    }
+}
+
+// Footprints: the usual one, a rounded wedge about a far origin, a disc.
+static void set_body(uint64_t seed) {
+    aisle_vehicle_msg msg;
+    memset(&msg, 0, sizeof msg);
+    if (seed % 3 == 1) {
+        const double wedge[3][2] = {{-0.1, -0.4}, {1.4, 0.0}, {-0.1, 0.4}};
+        msg.num_vertices = 3;
+        memcpy(msg.footprint, wedge, sizeof wedge);
+    }
+    msg.footprint_radius = seed % 3 == 0 ? 0.0F : 0.2F;
+    set_vehicle(&msg);
+}
+
+static void test_zones_agree_with_brute_force_for_2000_of_2000_pieces(void) {
+    static const style how = {.piece_max = 4.0, .radius_min = 0.5, .free_heading = true, .tight = false};
+    uint32_t held = 0, free_of_it = 0;
+    for (uint64_t seed = 0; seed < 2000; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        setUp();
+        set_body(seed);
+        clear_zones();
+        aisle_vec2 zone[8];
+        double v[8][2];
+        const int16_t n = (int16_t)(3 + aisle_rng_below(&rng, 6));
+        random_zone(&rng, zone, v, n);
+        (void)add_zone(0.01F, v, n);
+        take_zones();
+        (void)add(uniform(&rng, -2.0, 2.0), uniform(&rng, -2.0, 2.0), uniform(&rng, -3.0, 3.0));
+        add_piece(&rng, &how, seed % 5 == 0);
+        fill();
+        const double without = sum.duration, gap = brute_least_gap(zone, (uint32_t)n);
+        const double spacing = 2.0 * (sum.length + 3.2 * vehicle.outer_radius) / SAMPLES; // travel between samples
+        fill_with_zones();
+        if (gap <= 0.0) {
+            held++;
+            TEST_ASSERT_TRUE(sum.duration > (sum.length - 0.001) / 0.01);
+        } else if (gap > 0.05 + 1e-5 + spacing) {
+            free_of_it++;
+            TEST_ASSERT_EQUAL_DOUBLE(without, sum.duration);
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(200, held);
+    TEST_ASSERT_GREATER_THAN_UINT32(300, free_of_it);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_rule_holds_and_no_speed_could_be_higher_for_200_of_200_paths);
@@ -801,5 +1057,13 @@ int main(void) {
     RUN_TEST(test_dwells_that_are_negative_or_not_finite_or_on_the_move_are_refused);
     RUN_TEST(test_more_time_than_float_can_tell_is_refused_and_the_geometry_stays);
     RUN_TEST(test_a_vehicle_slow_beyond_reason_is_refused_not_divided_by);
+    RUN_TEST(test_a_zone_holds_wherever_the_footprint_touches_it_and_nowhere_else);
+    RUN_TEST(test_a_zone_a_hand_away_does_nothing);
+    RUN_TEST(test_a_zone_that_is_just_touched_holds);
+    RUN_TEST(test_the_lowest_of_all_limits_holds);
+    RUN_TEST(test_other_kinds_of_areas_set_no_limit);
+    RUN_TEST(test_a_turn_on_the_spot_in_a_zone_takes_its_time_as_ever);
+    RUN_TEST(test_a_layout_not_in_force_is_refused);
+    RUN_TEST(test_zones_agree_with_brute_force_for_2000_of_2000_pieces);
     return UNITY_END();
 }
