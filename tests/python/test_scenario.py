@@ -5,7 +5,7 @@ import json
 
 import pytest
 from aisle import query_t, vehicle_t
-from aisle_tools import query, vehicle
+from aisle_tools import movingai, query, vehicle
 from aisle_tools.errors import UserError
 from aisle_tools.scenario import read_scenario
 from aisle_tools.world import World
@@ -163,3 +163,32 @@ def test_a_query_can_be_encoded():
 def test_bad_poses_are_refused(text):
     with pytest.raises(UserError, match="X,Y"):
         query.parse_pose(text, "--start")
+
+
+MOVINGAI = "type octile\nheight 2\nwidth 3\nmap\n.GT\n@S.\n"
+
+
+def test_movingai_maps_have_their_first_row_on_top(tmp_path):
+    path = tmp_path / "m.map"
+    path.write_text(MOVINGAI)
+    world = movingai.read_world(path)
+    assert world.grid.occupied.tolist() == [[True, False, False], [False, False, True]]
+    assert world.bounds == (0.0, 0.0, 1.5, 1.0)
+    assert movingai.read_world(path, 0.25).bounds[2] == 0.75
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "needle"),
+    [
+        ("octile", "tile", "m.map:1: not a MovingAI map"),
+        ("width 3", "width x", "m.map:1: not a MovingAI map"),
+        (".GT", ".G", "m.map:5: needs 3 cells, has 2"),
+        ("height 2", "height 3", "m.map:7: needs 3 cells, has 0"),
+        ("width 3", "width 99999", "65535"),
+    ],
+)
+def test_broken_movingai_maps_are_refused(tmp_path, old, new, needle):
+    path = tmp_path / "m.map"
+    path.write_text(MOVINGAI.replace(old, new))
+    with pytest.raises(UserError, match=needle):
+        movingai.read_world(path)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aisle import status_t
 
-from aisle_tools import layouts, rosmap
+from aisle_tools import layouts, movingai, rosmap
 from aisle_tools.bus import Bus, LogWriter, StatusWatch, now_us, time_revision
 from aisle_tools.errors import UserError
 from aisle_tools.names import HINTS, cause_name
@@ -26,15 +26,14 @@ REFUSALS = (
 )
 
 
-def is_scenario(path: Path) -> bool:
-    return path.suffix.lower() == ".json"
-
-
 def read_any(path: Path, args: argparse.Namespace, margin: float = 0.0) -> tuple[World, Scenario | None]:
-    """A World from a map_server YAML or a scenario JSON; the Scenario too, if it is one."""
-    if is_scenario(path):
-        scenario = read_scenario(path, margin)
+    """A World from a map_server YAML, MovingAI .map or scenario JSON; the Scenario too, if it is one."""
+    resolution = getattr(args, "resolution", 0.0)
+    if path.suffix.lower() == ".json":
+        scenario = read_scenario(path, margin, resolution)
         return scenario.world, scenario
+    if path.suffix.lower() == ".map":
+        return movingai.read_world(path, resolution, args.max_cells), None
     if path.suffix.lower() in (".pgm", ".png", ".bmp", ".jpg"):
         raise UserError(f"{path}: give the map's .yaml file, not its image")
     return rosmap.read_world(path, args.strict_free, args.max_cells), None
@@ -51,10 +50,14 @@ def add_read_options(parser: argparse.ArgumentParser) -> None:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, nargs="+", metavar="FILE", help="map_server .yaml or scenario .json")
+    parser.add_argument(
+        "file", type=Path, nargs="+", metavar="FILE", help="map_server .yaml, scenario .json or MovingAI .map"
+    )
     add_read_options(parser)
     parser.add_argument("--margin", type=float, default=0.0, metavar="M", help="scenario: grow the bounds by radius + M")
-    parser.add_argument("--resolution", type=float, default=0.0, metavar="M", help="scenario: planner's grid, 0 = default")
+    parser.add_argument(
+        "--resolution", type=float, default=0.0, metavar="M", help="scenario: of the planner's grid; .map: of a cell, 0.5"
+    )
     parser.add_argument("--map-id", type=int, default=1, metavar="N")
     parser.add_argument("--map-revision", type=int, metavar="N", help="default: rises with time")
     parser.add_argument("--tile", type=int, default=layouts.TILE_SIDE, metavar="N", help="cells a side of a grid tile")
@@ -66,9 +69,7 @@ def run(args: argparse.Namespace) -> int:
     if args.resolution < 0.0:
         raise UserError(f"--resolution must not be negative: {args.resolution:g}")
     for i, path in enumerate(args.file):
-        world, scenario = read_any(path, args, args.margin)
-        if scenario is not None:
-            world.resolution = args.resolution
+        world, _ = read_any(path, args, args.margin)
         if args.log is not None:
             write_log(world, args, args.map_id + i)
         else:

@@ -64,13 +64,10 @@ def reason(path: path_t) -> str:
 
 def what(cause: int, ident: int) -> str:
     """The thing cause_id means."""
-    if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED, status_t.TOO_NARROW, status_t.NO_PATH):
-        if ident == -1:
-            return "by the scanned map"
-        if ident == -2:
-            return "by the bounds"
-        return f"by polygon {ident}"
-    if cause == status_t.GOAL_OUTSIDE:
+    if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED, status_t.TOO_NARROW, status_t.KINEMATIC):
+        where = {-1: "the scanned map", -2: "the bounds"}.get(ident, f"polygon {ident}")
+        return f"{'by' if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED) else 'at'} {where}"
+    if cause in (status_t.GOAL_OUTSIDE, status_t.NO_PATH):
         return f"goal {ident}"
     if cause == status_t.LIMIT:
         return f"limit {ident}"

@@ -29,7 +29,6 @@ STEP = 0.05  # m, of the coloured line
 SURROUNDINGS = 1.0  # m, shown around what is free
 KIND_COLOURS = ("#4a4a4a", "#b07d62", "#f2d492", "#d9c2e9", "#bcd8f0")
 REFUSED = "#d62728"
-GOAL_CAUSES = (status_t.GOAL_OCCUPIED, status_t.GOAL_OUTSIDE)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -162,8 +161,10 @@ class Picture:
 
     def _place(self, reply: path_t, start: tuple, goals: list[tuple]) -> tuple[float, float, float]:
         """(x, y, radius) of what stands in the way."""
-        if reply.cause == status_t.START_OCCUPIED:
+        if reply.cause in (status_t.START_OCCUPIED, status_t.POSE_OUTSIDE):
             return (*start, 0.5)
+        if reply.cause == status_t.GOAL_OUTSIDE and 1 <= reply.cause_id <= len(goals):
+            return (*goals[reply.cause_id - 1], 0.5)
         if reply.cause in (status_t.NO_PATH, status_t.TOO_NARROW, status_t.KINEMATIC):
             if self.field is None:
                 self.field = ClearanceField(self.obstacles)
