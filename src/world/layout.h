@@ -7,9 +7,20 @@
 // covers are occupied) and everything outside the bounds.
 // Where there is a scan, the planning grid is the scan's lattice: layout_t.resolution must be 0 or the scan's, and
 // the bounds must lie within half a cell of the scan's extent. Without one, resolution 0 means 0.05 m, doubled until
-// the grid fits the limit.
+// the grid fits the limit. A scanned cell marks itself alone, not the neighbours its border touches (the bounds of
+// grid.h hold all the same); cells the bounds cut are occupied.
+// A resolution is a float on the wire; one that is the float nearest to a whole number of micrometres is read as that
+// (0.05F as 0.05).
 // Bucket index: square buckets, CSR lists of polygon indices, side doubled until the lists fit.
-// Memory: carved once from limits. Time: part O(polygons * vertices); tile O(cells); commit O(polygons); build O(cells).
+//
+// Revisions rise strictly for one map_id; another map_id is another map and may have any. A part of a newer revision,
+// or of another map, ends the staging of an older one. Order of zones: as in the parts in order, whatever the order
+// they came in. A patch keeps the order: removed ones leave, changed ones stay in place, new ones (and removed ones put
+// again) come last in the message's order; so a full layout_t sent later for the same revision is a duplicate if its
+// sender does alike. Files: layout_store.h (what a layout is), layout_stage.c (parts), layout_tile.c (tiles),
+// layout_patch.c, layout_build.c (index and grid), layout.c (questions). Memory: carved once from limits; with the
+// default ones 10.9 MiB, 8 of them the grid. Time: part O(polygons * vertices), the last one O(all of them); tile
+// O(cells + tiles); patch O(polygons * vertices + cells/64); commit O(1); build O(cells).
 #ifndef AISLE_WORLD_LAYOUT_H
 #define AISLE_WORLD_LAYOUT_H
 
@@ -18,38 +29,84 @@
 #include "aisle/status.h"
 #include "base/arena.h"
 #include "world/grid.h"
+#include "world/id_map.h"
+#include "world/layout_index.h"
+#include "world/layout_store.h"
 #include "world/shape.h"
 
 #define AISLE_LAYOUT_RESOLUTION_DEFAULT 0.05 // m
+#define AISLE_LAYOUT_RESOLUTION_MIN 0.005    // m, of those that are given
+#define AISLE_LAYOUT_RESOLUTION_MAX 1.0      // m
+#define AISLE_LAYOUT_TILES_MAX 4096U         // of one revision
 #define AISLE_LAYOUT_ID_SCAN (-1)            // "obstacle id" of a scanned cell
 #define AISLE_LAYOUT_ID_BOUNDS (-2)          // and of the outside
 
-// Why a message was refused: an AISLE_STATUS_* cause, the id meant, the number needed or found.
+// Which limit a refusal with AISLE_STATUS_LIMIT means, in its id; value says how much would be needed.
+typedef enum aisle_layout_limit {
+    AISLE_LAYOUT_LIMIT_CELLS = 1,    // aisle_limits.cells
+    AISLE_LAYOUT_LIMIT_POLYGONS = 2, // aisle_limits.polygons
+    AISLE_LAYOUT_LIMIT_VERTICES = 3, // aisle_limits.vertices
+    AISLE_LAYOUT_LIMIT_SIDE = 4,     // AISLE_GRID_SIDE_MAX
+    AISLE_LAYOUT_LIMIT_TILES = 5     // AISLE_LAYOUT_TILES_MAX
+} aisle_layout_limit;
+
+// Why a message was refused: an AISLE_STATUS_* cause, the id meant, the number needed or found. All 0 if it was not.
+//   LIMIT         id: aisle_layout_limit, value: needed
+//   MALFORMED     id: the polygon's, or 0 for the rest of a layout_t or patch; the tile's part for a tile
+//                 value for a wrong checksum or number of polygons: the number of polygons that came
+//   OUTDATED, REVISION_GAP  id: the revision held (or being taken)
+//   MAP_MISMATCH  id: the map held
+//   CONFLICT      id: the polygon's or tile's where one is meant, else 0
+//   NO_LAYOUT     a tile or patch whose layout_t is not known; send that first
 typedef struct aisle_refusal {
     int16_t cause;
     int32_t id;
     float value;
 } aisle_refusal;
 
-typedef struct aisle_zone { // one polygon of the layout
-    aisle_aabb box;
-    uint32_t first; // of its vertices in the store
-    int32_t id;
-    float value, direction;
-    uint8_t n;   // 3..16
-    int8_t kind; // AISLE_POLYGON_*
-} aisle_zone;
-
 // The parts below are the layout's own; others go through the functions.
-typedef struct aisle_layout aisle_layout; // struct completed by the implementer further down
 
+typedef struct aisle_layout_tile {
+    uint16_t x0, y0, w, h; // cells; w = 0: not in yet
+} aisle_layout_tile;
+
+typedef enum aisle_layout_stage { AISLE_STAGE_EMPTY, AISLE_STAGE_FILLING, AISLE_STAGE_COMPLETE } aisle_layout_stage;
+
+typedef struct aisle_layout_staging { // what is known of the staged store
+    aisle_layout_stage stage;
+    uint64_t parts;                                                                  // bit p set: part p is in
+    uint32_t tiles;                                                                  // in
+    uint16_t part_first[AISLE_LAYOUT_MAX_PARTS], part_count[AISLE_LAYOUT_MAX_PARTS]; // zones of a part
+    aisle_layout_tile *tile;                                                         // [AISLE_LAYOUT_TILES_MAX]
+    aisle_id_map ids;                                                                // of the staged zones
+    aisle_id_map message;                                                            // of the polygons of one message
+    uint16_t *order;                                                                 // [polygons] scratch
+} aisle_layout_staging;
+
+typedef struct aisle_layout {
+    aisle_layout_store store[2];
+    uint8_t active; // which one; the other is staged
+    bool has_active;
+    uint8_t phase; // of the build
+    uint32_t next; // build progress in the phase
+    aisle_layout_staging staging;
+    aisle_layout_index index; // of the active store
+    aisle_grid grid;          // of the active store
+} aisle_layout;
+
+// A 0 in limits is its default. self is usable unless arena->overflow or measuring.
 void aisle_layout_carve(aisle_layout *self, aisle_arena *arena, const aisle_limits *limits);
 
 // Takes one part. AISLE_PARTIAL: more wanted. AISLE_OK: staged is complete (commit it), or a duplicate of what is held
-// (aisle_layout_is_staged() tells which). AISLE_BUSY: a complete staged layout waits for commit. AISLE_ERR_DATA: *why.
+// (aisle_layout_is_staged() tells which). AISLE_BUSY: a complete staged layout waits for commit, send again.
+// AISLE_ERR_DATA: refused, nothing has changed, *why says why; only when the last part makes the checksum or the number
+// of polygons wrong, staging starts anew.
 aisle_status aisle_layout_take_part(aisle_layout *self, const aisle_layout_msg *msg, aisle_refusal *why);
+// The same for a tile. A tile tells its place but not the size of the whole, so it is refused (NO_LAYOUT) until a part
+// of its revision is in. Tiles must not overlap: their order would matter.
 aisle_status aisle_layout_take_tile(aisle_layout *self, const aisle_grid_chunk_msg *msg, aisle_refusal *why);
-// Stages active with the edits applied, ready to commit.
+// Stages active with the edits applied, ready to commit: AISLE_OK, also for the patch that led to the active revision.
+// A layout_t of the same or an older revision that is being staged is given up.
 aisle_status aisle_layout_take_patch(aisle_layout *self, const aisle_layout_patch_msg *msg, aisle_refusal *why);
 
 bool aisle_layout_is_staged(const aisle_layout *self);   // complete and waiting for commit
@@ -57,31 +114,39 @@ bool aisle_layout_is_in_force(const aisle_layout *self); // committed and built
 int32_t aisle_layout_map_id(const aisle_layout *self);   // of the active one; 0 if none
 int32_t aisle_layout_map_revision(const aisle_layout *self);
 
-void aisle_layout_commit(aisle_layout *self); // swaps; not in force until build() says AISLE_OK
-// About `units` rows or polygons of work. AISLE_BUSY, then AISLE_OK.
+// Swaps; not in force until build() says AISLE_OK. Only when is_staged().
+void aisle_layout_commit(aisle_layout *self);
+// About `units` rows or polygons of work; the index and clearing the grid are one unit each (O(polygons), O(cells)).
+// AISLE_BUSY, then AISLE_OK. AISLE_ERR_ARG: nothing was committed.
 aisle_status aisle_layout_build(aisle_layout *self, uint32_t units);
 
 // ---- the layout in force
 const aisle_grid *aisle_layout_grid(const aisle_layout *self);
-aisle_aabb aisle_layout_bounds(const aisle_layout *self);
+aisle_aabb aisle_layout_bounds(const aisle_layout *self); // with a scan: what they have in common with its extent
+uint32_t aisle_layout_zone_count(const aisle_layout *self);
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index);
 aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone *zone);
+static inline bool aisle_zone_is_obstacle(const aisle_zone *zone) {
+    return zone->kind == AISLE_POLYGON_OBSTACLE || zone->kind == AISLE_POLYGON_KEEPOUT;
+}
 
-// Walks the zones whose box overlaps `box`, each once, in no promised but a fixed order:
+// Walks the zones whose box overlaps `box` (finite), each once, in no promised but a fixed order:
 //     for (aisle_layout_walk w = aisle_layout_walk_over(layout, box); aisle_layout_walk_next(&w, &zone);) ...
 typedef struct aisle_layout_walk {
     const aisle_layout *layout;
     aisle_aabb box;
-    uint32_t bx0, bx1, by1, bx, by, at, end;
+    uint32_t bx0, by0, bx1, by1, bx, by, at, end;
 } aisle_layout_walk;
 aisle_layout_walk aisle_layout_walk_over(const aisle_layout *self, aisle_aabb box);
 bool aisle_layout_walk_next(aisle_layout_walk *walk, const aisle_zone **zone);
 
-// Next run of occupied scan cells in row iy at or after column *ix0 and before ix1: [*ix0, *end). False: none.
+// Next run of occupied scan cells in row iy at or after column *ix0 and before ix1: [*ix0, *end). False: none. Only
+// where has_scan(); columns and row within the lattice of aisle_layout_grid().
 bool aisle_layout_scan_run(const aisle_layout *self, uint32_t iy, uint32_t *ix0, uint32_t ix1, uint32_t *end);
 bool aisle_layout_has_scan(const aisle_layout *self);
 
 // Exact gap (m) between a shape in the map frame and the nearest obstacle, at most `cap`; 0 = contact. *id (may be
-// NULL): that obstacle, a polygon's id or AISLE_LAYOUT_ID_*; 0 if none within cap. Equal gaps: the least id.
+// NULL): that obstacle, a polygon's id or AISLE_LAYOUT_ID_*; 0 if none within cap. Equal gaps: the least id. A shape
+// that is not finite: contact with the bounds. O(zones and scan rows within cap).
 double aisle_layout_gap(const aisle_layout *self, const aisle_convex *shape, double cap, int32_t *id);
 #endif

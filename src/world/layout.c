@@ -1,0 +1,119 @@
+#include "world/layout.h"
+
+#include "base/check.h"
+#include "world/layout_internal.h"
+
+static uint32_t or_default(uint32_t value, uint32_t fallback) {
+    return value == 0 ? fallback : value;
+}
+
+void aisle_layout_carve(aisle_layout *self, aisle_arena *arena, const aisle_limits *limits) {
+    enum { PATCH_IDS = AISLE_LAYOUT_PATCH_MAX_REMOVED + AISLE_LAYOUT_PATCH_MAX_POLYGONS };
+    const uint32_t cells = or_default(limits->cells, AISLE_LIMITS_CELLS_DEFAULT);
+    const uint32_t zones = or_default(limits->polygons, AISLE_LIMITS_POLYGONS_DEFAULT);
+    const uint32_t vertices = or_default(limits->vertices, AISLE_LIMITS_VERTICES_DEFAULT);
+    *self = (aisle_layout){0};
+    for (uint32_t i = 0; i < 2U; i++) {
+        aisle_layout_store_carve(&self->store[i], arena, zones, vertices, cells);
+    }
+    aisle_layout_staging *staging = &self->staging;
+    staging->tile = aisle_arena_take(arena, AISLE_LAYOUT_TILES_MAX, sizeof *staging->tile);
+    staging->order = aisle_arena_take(arena, zones, sizeof *staging->order);
+    aisle_id_map_carve(&staging->ids, arena, zones);
+    AISLE_ASSERT(PATCH_IDS <= AISLE_LAYOUT_MAX_POLYGONS); // one map does for either message
+    aisle_id_map_carve(&staging->message, arena, AISLE_LAYOUT_MAX_POLYGONS);
+    aisle_layout_index_carve(&self->index, arena, zones);
+    aisle_grid_carve(&self->grid, arena, cells);
+}
+
+// ---- what is held
+
+bool aisle_layout_is_staged(const aisle_layout *self) {
+    return self->staging.stage == AISLE_STAGE_COMPLETE;
+}
+
+int32_t aisle_layout_map_id(const aisle_layout *self) {
+    return self->has_active ? aisle_layout_held(self)->header.map_id : 0;
+}
+
+int32_t aisle_layout_map_revision(const aisle_layout *self) {
+    return self->has_active ? aisle_layout_held(self)->header.map_revision : 0;
+}
+
+const aisle_grid *aisle_layout_grid(const aisle_layout *self) {
+    return &self->grid;
+}
+
+aisle_aabb aisle_layout_bounds(const aisle_layout *self) {
+    return aisle_layout_held(self)->header.bounds;
+}
+
+uint32_t aisle_layout_zone_count(const aisle_layout *self) {
+    return aisle_layout_held(self)->zone_count;
+}
+
+const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index) {
+    AISLE_ASSERT(index < aisle_layout_held(self)->zone_count);
+    return &aisle_layout_held(self)->zones[index];
+}
+
+aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone *zone) {
+    return (aisle_convex){&aisle_layout_held(self)->vertices[zone->first], zone->n, 0.0};
+}
+
+bool aisle_layout_has_scan(const aisle_layout *self) {
+    return self->has_active && aisle_layout_held(self)->header.tiles > 0;
+}
+
+bool aisle_layout_scan_run(const aisle_layout *self, uint32_t iy, uint32_t *ix0, uint32_t ix1, uint32_t *end) {
+    AISLE_ASSERT(aisle_layout_has_scan(self));
+    return aisle_layout_store_run(aisle_layout_held(self), iy, ix0, ix1, end);
+}
+
+// ---- walk
+
+static void enter_bucket(aisle_layout_walk *walk) {
+    const aisle_layout_index *index = &walk->layout->index;
+    const uint32_t bucket = walk->by * index->nx + walk->bx;
+    walk->at = index->starts[bucket];
+    walk->end = index->starts[bucket + 1U];
+}
+
+aisle_layout_walk aisle_layout_walk_over(const aisle_layout *self, aisle_aabb box) {
+    aisle_layout_walk walk = {.layout = self, .box = box, .by = 1}; // past by1: nothing to walk
+    if (self->index.nx > 0 && box.lo.x <= box.hi.x && box.lo.y <= box.hi.y) {
+        const aisle_bucket_range r = aisle_layout_index_range(&self->index, box);
+        walk.bx0 = walk.bx = r.x0;
+        walk.by0 = walk.by = r.y0;
+        walk.bx1 = r.x1;
+        walk.by1 = r.y1;
+        enter_bucket(&walk);
+    }
+    return walk;
+}
+
+// A zone lies in several buckets: it is reported in the first one that its range and the walk's have in common.
+static bool is_first_meeting(const aisle_layout_walk *walk, const aisle_zone *zone) {
+    const aisle_bucket_range r = aisle_layout_index_range(&walk->layout->index, zone->box);
+    return walk->bx == (r.x0 > walk->bx0 ? r.x0 : walk->bx0) && walk->by == (r.y0 > walk->by0 ? r.y0 : walk->by0);
+}
+
+bool aisle_layout_walk_next(aisle_layout_walk *walk, const aisle_zone **zone) {
+    while (walk->by <= walk->by1) {
+        while (walk->at < walk->end) {
+            const uint32_t i = walk->layout->index.entries[walk->at];
+            walk->at++;
+            const aisle_zone *candidate = &aisle_layout_held(walk->layout)->zones[i];
+            if (aisle_aabb_overlap(candidate->box, walk->box) && is_first_meeting(walk, candidate)) {
+                *zone = candidate;
+                return true;
+            }
+        }
+        walk->bx = walk->bx < walk->bx1 ? walk->bx + 1U : walk->bx0;
+        walk->by += walk->bx == walk->bx0 ? 1U : 0U;
+        if (walk->by <= walk->by1) {
+            enter_bucket(walk);
+        }
+    }
+    return false;
+}
