@@ -1,4 +1,4 @@
-"""MovingAI grid maps (.map, type octile): '.', 'G' and 'S' are free, all else is occupied. Unitless: a cell's side is given."""
+"""MovingAI grid maps (.map, type octile): ".", "G" and "S" are free, all else is occupied. Unitless: cells get a side."""
 
 from __future__ import annotations
 
