@@ -1,0 +1,672 @@
+#include "algo/pso.h" // first: proves that the header stands alone
+
+#include "base/angle.h"
+#include "base/crc32.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    DIM_MAX = 8,
+    PARTICLES_MAX = 64,
+    DIM = 3,
+    PARTICLES = 24,
+    LEN_MAX = PARTICLES_MAX * (3 * DIM_MAX + 2) + DIM_MAX
+};
+
+static const float lo[DIM] = {-1.0F, -2.0F, 0.0F}, hi[DIM] = {1.0F, 2.0F, 5.0F};
+static const float peak[DIM] = {0.25F, -1.5F, 5.0F}; // the last one lies on the wall of the box
+static float wide_lo[DIM_MAX], wide_hi[DIM_MAX];
+static float work[LEN_MAX + 1]; // one canary float behind the block
+static size_t work_len;
+static uint32_t calls;
+static aisle_pso pso;
+static aisle_pso_config cfg;
+
+// The functions; each checks that it is asked about points of the box only.
+
+static void expect_in_box(const float *x) {
+    calls++;
+    for (int i = 0; i < cfg.dim; i++) {
+        TEST_ASSERT_TRUE(x[i] >= cfg.lo[i] && x[i] <= cfg.hi[i]);
+    }
+}
+
+static float bowl_value(const float *x) {
+    float sum = 0.0F;
+    for (int i = 0; i < DIM; i++) {
+        sum += (x[i] - peak[i]) * (x[i] - peak[i]);
+    }
+    return sum;
+}
+
+static aisle_pso_cost bowl(void *ctx, const float *x) {
+    (void)ctx;
+    expect_in_box(x);
+    return (aisle_pso_cost){0.0F, bowl_value(x)};
+}
+
+static aisle_pso_cost bowl_with_a_nan_rim(void *above, const float *x) {
+    const aisle_pso_cost cost = bowl(NULL, x);
+    return cost.value > *(const float *)above ? (aisle_pso_cost){0.0F, NAN} : cost;
+}
+
+// Only x[0] >= 0.5 is feasible, and that is dearer: value alone would go the other way.
+static aisle_pso_cost walled_bowl(void *ctx, const float *x) {
+    const aisle_pso_cost cost = bowl(ctx, x);
+    return (aisle_pso_cost){x[0] < 0.5F ? 0.5F - x[0] : 0.0F, cost.value};
+}
+
+static aisle_pso_cost rosenbrock(void *ctx, const float *x) {
+    (void)ctx;
+    expect_in_box(x);
+    float sum = 0.0F;
+    for (int i = 0; i + 1 < cfg.dim; i++) {
+        const float a = x[i + 1] - x[i] * x[i];
+        const float b = 1.0F - x[i];
+        sum += 100.0F * a * a + b * b;
+    }
+    return (aisle_pso_cost){0.0F, sum};
+}
+
+static aisle_pso_cost rastrigin(void *ctx, const float *x) {
+    (void)ctx;
+    expect_in_box(x);
+    double sum = 0.0;
+    for (int i = 0; i < cfg.dim; i++) {
+        double sine;
+        double cosine;
+        aisle_sincos(2.0 * AISLE_PI * (double)x[i], &sine, &cosine); // the same hits on every board
+        sum += (double)(x[i] * x[i]) + 10.0 - 10.0 * cosine;
+    }
+    return (aisle_pso_cost){0.0F, (float)sum};
+}
+
+static aisle_status start(void) {
+    work_len = AISLE_PSO_WORK_LEN(cfg.dim, cfg.particles);
+    TEST_ASSERT_TRUE(work_len <= LEN_MAX);
+    work[work_len] = 42.0F;
+    return aisle_pso_start(&pso, &cfg, work, work_len);
+}
+
+// Runs to the end and checks the budget of every step.
+static aisle_status run_in_steps_of(uint32_t slice) {
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    aisle_status st = AISLE_BUSY;
+    while (st == AISLE_BUSY) {
+        calls = 0;
+        st = aisle_pso_step(&pso, slice);
+        TEST_ASSERT_TRUE(st == AISLE_BUSY ? calls == slice : calls <= slice);
+    }
+    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
+    return st;
+}
+
+// How many of the seeds 0 .. seeds-1 meet the goal.
+static uint32_t hits_of(uint64_t seeds) {
+    uint32_t hits = 0;
+    for (cfg.seed = 0; cfg.seed < seeds; cfg.seed++) {
+        hits += run_in_steps_of(UINT32_MAX) == AISLE_OK;
+    }
+    return hits;
+}
+
+static void use_wide_box(uint16_t dim, float half) {
+    for (int i = 0; i < DIM_MAX; i++) {
+        wide_lo[i] = -half;
+        wide_hi[i] = half;
+    }
+    cfg.dim = dim;
+    cfg.lo = wide_lo;
+    cfg.hi = wide_hi;
+}
+
+void setUp(void) {
+    cfg = (aisle_pso_config){.cost = bowl,
+                             .lo = lo,
+                             .hi = hi,
+                             .inertia = AISLE_PSO_CONSTRICTION,
+                             .seed = 1,
+                             .eval_max = 3000,
+                             .value_goal = 1e-6F,
+                             .dim = DIM,
+                             .particles = PARTICLES};
+    memset(&pso, 0, sizeof pso);
+    work_len = LEN_MAX;
+    work[LEN_MAX] = 42.0F;
+}
+void tearDown(void) {
+    TEST_ASSERT_EQUAL_FLOAT(42.0F, work[work_len]);
+}
+
+static void test_minimum_on_the_wall_is_found_for_200_of_200_seeds(void) {
+    TEST_ASSERT_EQUAL_UINT32(200, hits_of(200));
+    for (int i = 0; i < DIM; i++) {
+        TEST_ASSERT_FLOAT_WITHIN(1e-3F, peak[i], aisle_pso_best(&pso)[i]); // sqrt(value_goal)
+    }
+}
+
+static void test_minimum_is_found_with_falling_inertia_for_200_of_200_seeds(void) {
+    cfg.inertia = AISLE_PSO_FALLING;
+    cfg.eval_max = 12000; // it still flies wide while the inertia is high
+    TEST_ASSERT_EQUAL_UINT32(200, hits_of(200));
+}
+
+static void expect_hits(uint32_t constriction, uint32_t falling, uint64_t seeds) {
+    cfg.inertia = AISLE_PSO_CONSTRICTION;
+    TEST_ASSERT_EQUAL_UINT32(constriction, hits_of(seeds));
+    cfg.inertia = AISLE_PSO_FALLING;
+    TEST_ASSERT_EQUAL_UINT32(falling, hits_of(seeds));
+}
+
+static void test_rosenbrock_in_2_dimensions_is_hit_for_100_and_99_of_100_seeds(void) {
+    use_wide_box(2, 5.0F);
+    cfg.cost = rosenbrock;
+    cfg.eval_max = 8000;
+    cfg.value_goal = 1e-4F;
+    expect_hits(100, 99, 100);
+}
+
+// The valley has a second end near (-1, 1, 1, 1, 1), value 3.9, and is long: falling inertia gets within 0.3 only.
+static void test_rosenbrock_in_5_dimensions_is_hit_for_43_and_50_of_50_seeds(void) {
+    use_wide_box(5, 5.0F);
+    cfg.cost = rosenbrock;
+    cfg.particles = 20;
+    cfg.eval_max = 40000;
+    cfg.value_goal = 1e-2F;
+    cfg.inertia = AISLE_PSO_CONSTRICTION;
+    TEST_ASSERT_EQUAL_UINT32(43, hits_of(50));
+    cfg.inertia = AISLE_PSO_FALLING;
+    cfg.value_goal = 0.3F;
+    TEST_ASSERT_EQUAL_UINT32(50, hits_of(50));
+}
+
+// A thousand local minima; constriction settles in the one beside now and then.
+static void test_rastrigin_in_3_dimensions_is_hit_for_49_and_50_of_50_seeds(void) {
+    use_wide_box(3, 5.12F);
+    cfg.cost = rastrigin;
+    cfg.particles = 40;
+    cfg.eval_max = 12000;
+    cfg.value_goal = 1e-3F;
+    expect_hits(49, 50, 50);
+}
+
+static void test_any_slicing_gives_the_same_bits(void) {
+    float whole[DIM];
+    for (int mode = 0; mode < 2; mode++) {
+        cfg.inertia = mode == 0 ? AISLE_PSO_FALLING : AISLE_PSO_CONSTRICTION;
+        (void)run_in_steps_of(UINT32_MAX);
+        memcpy(whole, aisle_pso_best(&pso), sizeof whole);
+        const uint32_t evals = pso.evals;
+        for (uint32_t slice = 1; slice < 40; slice++) {
+            (void)run_in_steps_of(slice);
+            TEST_ASSERT_EQUAL_UINT32(evals, pso.evals);
+            TEST_ASSERT_EQUAL_MEMORY(whole, aisle_pso_best(&pso), sizeof whole);
+        }
+    }
+}
+
+static void test_invariants_hold_after_every_evaluation(void) {
+    cfg.cost = walled_bowl;
+    cfg.eval_max = 500;
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    do {
+        TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
+    } while (aisle_pso_step(&pso, 1) == AISLE_BUSY);
+    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
+}
+
+static void test_seeds_differ(void) {
+    float first[DIM];
+    cfg.value_goal = -INFINITY;
+    cfg.eval_max = 100;
+    (void)run_in_steps_of(9);
+    memcpy(first, aisle_pso_best(&pso), sizeof first);
+    cfg.seed = 2;
+    (void)run_in_steps_of(9);
+    TEST_ASSERT_TRUE(memcmp(first, aisle_pso_best(&pso), sizeof first) != 0);
+}
+
+static void test_first_point_asked_about_is_the_guess(void) {
+    const float guess[DIM] = {0.5F, 0.5F, 1.0F};
+    cfg.guess = guess;
+    cfg.spread = 0.1F;
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_pso_step(&pso, 1));
+    TEST_ASSERT_EQUAL_MEMORY(guess, aisle_pso_best(&pso), sizeof guess);
+    TEST_ASSERT_EQUAL_UINT32(1, pso.best_updates);
+}
+
+static void test_guess_outside_is_clamped_to_the_box(void) {
+    const float guess[DIM] = {-9.0F, 9.0F, 1.0F};
+    cfg.guess = guess;
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    (void)aisle_pso_step(&pso, 1);
+    TEST_ASSERT_EQUAL_FLOAT(-1.0F, aisle_pso_best(&pso)[0]);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, aisle_pso_best(&pso)[1]);
+}
+
+static void test_result_is_never_worse_than_the_guess_for_200_of_200_seeds(void) {
+    const float guess[DIM] = {0.26F, -1.49F, 4.99F};
+    cfg.guess = guess;
+    cfg.eval_max = 30;
+    cfg.value_goal = -INFINITY;
+    for (cfg.seed = 0; cfg.seed < 200; cfg.seed++) {
+        TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(7));
+        TEST_ASSERT_TRUE(bowl_value(aisle_pso_best(&pso)) <= bowl_value(guess));
+    }
+}
+
+static float farthest[DIM];
+
+static aisle_pso_cost note_farthest(void *guess, const float *x) {
+    expect_in_box(x);
+    for (int i = 0; i < DIM; i++) {
+        const float off = fabsf(x[i] - ((const float *)guess)[i]) / (hi[i] - lo[i]);
+        farthest[i] = off > farthest[i] ? off : farthest[i];
+    }
+    return (aisle_pso_cost){0.0F, 1.0F};
+}
+
+static void test_particles_start_within_the_spread_and_fill_it(void) {
+    static float guess[DIM] = {0.0F, 0.0F, 2.5F};
+    cfg.guess = guess;
+    cfg.cost = note_farthest;
+    cfg.cost_ctx = guess;
+    cfg.value_goal = -INFINITY;
+    const float spreads[3] = {0.05F, 0.3F, 0.0F};
+    for (int k = 0; k < 3; k++) {
+        const float reach = k == 2 ? 0.5F : spreads[k]; // 0: the whole box
+        memset(farthest, 0, sizeof farthest);
+        cfg.spread = spreads[k];
+        TEST_ASSERT_EQUAL(AISLE_OK, start());
+        (void)aisle_pso_step(&pso, PARTICLES);
+        for (int i = 0; i < DIM; i++) {
+            TEST_ASSERT_TRUE(farthest[i] <= reach * 1.00001F && farthest[i] > reach * 0.7F);
+        }
+    }
+}
+
+static void test_feasible_is_better_than_any_value(void) {
+    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){0.0F, 9.0F}, (aisle_pso_cost){0.1F, -9.0F}));
+    TEST_ASSERT_FALSE(aisle_pso_better((aisle_pso_cost){0.1F, -9.0F}, (aisle_pso_cost){0.0F, 9.0F}));
+    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){0.1F, 9.0F}, (aisle_pso_cost){0.2F, -9.0F}));
+    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){0.1F, 1.0F}, (aisle_pso_cost){0.1F, 2.0F}));
+    TEST_ASSERT_FALSE(aisle_pso_better((aisle_pso_cost){0.1F, 1.0F}, (aisle_pso_cost){0.1F, 1.0F}));
+    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){5.0F, 5.0F}, (aisle_pso_cost){INFINITY, INFINITY}));
+}
+
+static void test_violation_comes_first_for_100_of_100_seeds(void) {
+    cfg.cost = walled_bowl;
+    cfg.value_goal = -INFINITY;
+    for (cfg.seed = 0; cfg.seed < 100; cfg.seed++) {
+        TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(100));
+        TEST_ASSERT_TRUE(aisle_pso_best(&pso)[0] >= 0.5F);
+        TEST_ASSERT_FLOAT_WITHIN(2e-3F, 0.0625F, pso.best_cost.value); // (0.5 - 0.25)^2: at the wall
+        TEST_ASSERT_TRUE(pso.best_cost.violation <= 0.0F);
+    }
+}
+
+static aisle_pso_cost never_feasible(void *ctx, const float *x) {
+    const aisle_pso_cost cost = bowl(ctx, x);
+    return (aisle_pso_cost){1.0F + cost.value, -1000.0F};
+}
+
+static void test_goal_is_not_met_by_a_point_that_violates(void) {
+    cfg.cost = never_feasible;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(64));
+    TEST_ASSERT_EQUAL_UINT32(cfg.eval_max, pso.evals);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.0F, pso.best_cost.violation); // but the least violation is found
+}
+
+static void test_nan_rim_is_counted_and_the_minimum_still_found_for_200_of_200_seeds(void) {
+    float above = 4.0F;
+    cfg.cost = bowl_with_a_nan_rim;
+    cfg.cost_ctx = &above;
+    TEST_ASSERT_EQUAL_UINT32(200, hits_of(200));
+    TEST_ASSERT_TRUE(pso.nan_costs > 0 && pso.nan_costs < pso.evals);
+}
+
+static void test_a_small_allowed_place_is_looked_for_at_random_until_seen(void) {
+    float above = 0.05F; // some 1/600 of the box
+    cfg.cost = bowl_with_a_nan_rim;
+    cfg.cost_ctx = &above;
+    cfg.eval_max = 12000;
+    TEST_ASSERT_EQUAL_UINT32(100, hits_of(100));
+}
+
+static void test_nan_everywhere_ends_partial_with_no_best(void) {
+    float nowhere = -1.0F;
+    cfg.cost = bowl_with_a_nan_rim;
+    cfg.cost_ctx = &nowhere;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(7));
+    TEST_ASSERT_NULL(aisle_pso_best(&pso));
+    TEST_ASSERT_EQUAL_UINT32(cfg.eval_max, pso.nan_costs);
+    TEST_ASSERT_EQUAL_UINT32(0, pso.best_updates);
+    TEST_ASSERT_TRUE(isinf(pso.best_cost.violation) && isinf(pso.best_cost.value));
+}
+
+static aisle_pso_cost answer;
+
+static aisle_pso_cost always(void *ctx, const float *x) {
+    (void)ctx;
+    expect_in_box(x);
+    return answer;
+}
+
+static void expect_no_best_for(float violation, float value) {
+    answer = (aisle_pso_cost){violation, value};
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(11));
+    TEST_ASSERT_NULL(aisle_pso_best(&pso));
+}
+
+static void test_infinity_or_nan_in_either_part_is_not_allowed(void) {
+    cfg.cost = always;
+    cfg.value_goal = INFINITY;
+    cfg.eval_max = 50;
+    expect_no_best_for(INFINITY, 0.0F);
+    TEST_ASSERT_EQUAL_UINT32(0, pso.nan_costs);
+    expect_no_best_for(0.0F, INFINITY);
+    expect_no_best_for(NAN, 0.0F);
+    TEST_ASSERT_EQUAL_UINT32(50, pso.nan_costs);
+    expect_no_best_for(0.0F, NAN);
+    TEST_ASSERT_EQUAL_UINT32(50, pso.nan_costs);
+}
+
+static void test_negative_violation_is_read_as_feasible(void) {
+    cfg.cost = always;
+    answer = (aisle_pso_cost){-3.0F, 0.0F};
+    TEST_ASSERT_EQUAL(AISLE_OK, run_in_steps_of(11));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, pso.best_cost.violation);
+    TEST_ASSERT_EQUAL_UINT32(1, pso.evals);
+}
+
+static void test_stall_ends_the_run_that_many_evaluations_after_the_last_gain(void) {
+    cfg.cost = always;
+    answer = (aisle_pso_cost){0.0F, 5.0F};
+    cfg.stall_max = 77;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(10));
+    TEST_ASSERT_EQUAL_UINT32(1, pso.last_improvement);
+    TEST_ASSERT_EQUAL_UINT32(78, pso.evals);
+    cfg.cost = bowl;
+    cfg.value_goal = -INFINITY;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(10));
+    TEST_ASSERT_TRUE(pso.evals - pso.last_improvement == 77 || pso.evals == cfg.eval_max);
+}
+
+static void test_eval_max_is_used_up_and_never_exceeded(void) {
+    cfg.value_goal = -INFINITY;
+    cfg.eval_max = 1234;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(1000));
+    TEST_ASSERT_EQUAL_UINT32(1234, pso.evals);
+}
+
+static void test_further_steps_repeat_the_answer_and_cost_nothing(void) {
+    TEST_ASSERT_EQUAL(AISLE_OK, run_in_steps_of(50));
+    const uint32_t evals = pso.evals;
+    calls = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_pso_step(&pso, 50));
+    TEST_ASSERT_TRUE(calls == 0 && pso.evals == evals);
+}
+
+static void test_a_step_of_nothing_asks_nothing(void) {
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    calls = 0;
+    TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_pso_step(&pso, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, calls);
+    TEST_ASSERT_NULL(aisle_pso_best(&pso));
+}
+
+static void test_start_calls_no_cost(void) {
+    calls = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    TEST_ASSERT_EQUAL_UINT32(0, calls);
+}
+
+static void test_counters_count(void) {
+    cfg.value_goal = -INFINITY;
+    cfg.eval_max = 500;
+    calls = 0;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(UINT32_MAX));
+    TEST_ASSERT_EQUAL_UINT32(calls, pso.evals);
+    TEST_ASSERT_TRUE(pso.best_updates > 10 && pso.best_updates < 200);
+    TEST_ASSERT_EQUAL_UINT32(0, pso.nan_costs);
+    TEST_ASSERT_TRUE(bowl_value(aisle_pso_best(&pso)) <= pso.best_cost.value &&
+                     bowl_value(aisle_pso_best(&pso)) >= pso.best_cost.value);
+}
+
+static void test_falling_inertia_takes_the_stated_defaults(void) {
+    float by_default[DIM];
+    cfg.inertia = AISLE_PSO_FALLING;
+    (void)run_in_steps_of(64);
+    memcpy(by_default, aisle_pso_best(&pso), sizeof by_default);
+    cfg.w_start = 0.9F;
+    cfg.w_end = 0.4F;
+    cfg.c1 = cfg.c2 = 2.0F;
+    (void)run_in_steps_of(64);
+    TEST_ASSERT_EQUAL_MEMORY(by_default, aisle_pso_best(&pso), sizeof by_default);
+    const aisle_pso_config same = cfg;
+#define CHANGES(field, value)                                                                                          \
+    cfg = same;                                                                                                        \
+    cfg.field = (value);                                                                                               \
+    (void)run_in_steps_of(64);                                                                                         \
+    TEST_ASSERT_TRUE_MESSAGE(memcmp(by_default, aisle_pso_best(&pso), sizeof by_default) != 0, #field)
+    CHANGES(w_start, 0.8F);
+    CHANGES(w_end, 0.2F);
+    CHANGES(c1, 1.5F);
+    CHANGES(c2, 1.5F);
+    cfg = same;
+}
+
+// x and v of one particle, one evaluation at a time, against the formula written down once more in double.
+static void test_a_particle_moves_by_the_stated_formula(void) {
+    cfg.cost = bowl;
+    cfg.value_goal = -INFINITY;
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    (void)aisle_pso_step(&pso, 10 * PARTICLES);
+    for (int round = 0; round < 200; round++) {
+        float *x = work + (size_t)pso.next * DIM;
+        float *v = x + PARTICLES * DIM;
+        float x_before[DIM];
+        float v_before[DIM];
+        memcpy(x_before, x, sizeof x_before);
+        memcpy(v_before, v, sizeof v_before);
+        aisle_rng rng = pso.rng;
+        const float *p = v + PARTICLES * DIM;
+        (void)aisle_pso_step(&pso, 1);
+        const float *g = aisle_pso_best(&pso);
+        for (int i = 0; i < DIM; i++) {
+            const double r1 = (double)aisle_rng_float(&rng);
+            const double r2 = (double)aisle_rng_float(&rng);
+            const double at = (double)x_before[i];
+            const double half = 0.5 * ((double)hi[i] - (double)lo[i]);
+            double want = 0.729844 * (double)v_before[i] + 1.49618 * r1 * ((double)p[i] - at) +
+                          1.49618 * r2 * ((double)g[i] - at);
+            want = want > half ? half : (want < -half ? -half : want);
+            const bool inside = at + want >= (double)lo[i] && at + want <= (double)hi[i];
+            TEST_ASSERT_FLOAT_WITHIN(1e-5F, inside ? (float)(at + want) : (want > 0.0 ? hi[i] : lo[i]), x[i]);
+            TEST_ASSERT_FLOAT_WITHIN(1e-5F, inside ? (float)want : 0.0F, v[i]);
+        }
+    }
+}
+
+static void expect_refusal(const char *field) {
+    static aisle_pso before;
+    static float before_work[LEN_MAX];
+    memcpy(&before, &pso, sizeof pso);
+    memcpy(before_work, work, sizeof before_work);
+    TEST_ASSERT_EQUAL_MESSAGE(AISLE_ERR_ARG, aisle_pso_start(&pso, &cfg, work, LEN_MAX), field);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &pso, sizeof pso);
+    TEST_ASSERT_EQUAL_MEMORY(before_work, work, sizeof before_work);
+}
+
+static void test_start_refuses_each_bad_field_and_leaves_everything_alone(void) {
+    pso.evals = 77;
+    const aisle_pso_config good = cfg;
+#define REFUSE(field, value)                                                                                           \
+    cfg = good;                                                                                                        \
+    cfg.field = (value);                                                                                               \
+    expect_refusal(#field " = " #value)
+    REFUSE(cost, NULL);
+    REFUSE(lo, NULL);
+    REFUSE(hi, NULL);
+    REFUSE(dim, 0);
+    REFUSE(dim, AISLE_PSO_DIM_MAX + 1);
+    REFUSE(particles, 1);
+    REFUSE(particles, AISLE_PSO_PARTICLES_MAX + 1);
+    REFUSE(eval_max, PARTICLES - 1);
+    REFUSE(value_goal, NAN);
+    REFUSE(spread, -0.1F);
+    REFUSE(spread, NAN);
+    REFUSE(spread, INFINITY);
+    REFUSE(inertia, (aisle_pso_inertia)2);
+    REFUSE(w_start, 1.1F);
+    REFUSE(w_start, NAN);
+    REFUSE(w_end, -0.1F);
+    REFUSE(w_end, NAN);
+    REFUSE(c1, -1.0F);
+    REFUSE(c1, 4.1F);
+    REFUSE(c2, NAN);
+    REFUSE(c2, 4.1F);
+    cfg = good;
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_pso_start(&pso, NULL, work, LEN_MAX));
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_pso_start(&pso, &cfg, NULL, LEN_MAX));
+    TEST_ASSERT_EQUAL_UINT32(77, pso.evals);
+}
+
+static void test_start_refuses_every_bad_box_and_guess(void) {
+    const float bad[6][2] = {{1.0F, 1.0F}, {2.0F, 1.0F}, {NAN, 1.0F}, {0.0F, NAN}, {-INFINITY, 0.0F}, {0.0F, 2e30F}};
+    for (int i = 0; i < 6; i++) {
+        for (int at = 0; at < DIM; at++) {
+            use_wide_box(DIM, 1.0F);
+            wide_lo[at] = bad[i][0];
+            wide_hi[at] = bad[i][1];
+            expect_refusal("box");
+        }
+    }
+    use_wide_box(DIM, 1.0F);
+    float guess[DIM] = {0.0F, NAN, 0.0F};
+    cfg.guess = guess;
+    expect_refusal("guess");
+    guess[1] = INFINITY;
+    expect_refusal("guess");
+}
+
+static void test_start_refuses_work_one_float_short_and_leaves_self_alone(void) {
+    pso.evals = 77;
+    work_len = AISLE_PSO_WORK_LEN(DIM, PARTICLES);
+    work[work_len] = 42.0F;
+    TEST_ASSERT_EQUAL(AISLE_ERR_CAPACITY, aisle_pso_start(&pso, &cfg, work, work_len - 1));
+    TEST_ASSERT_EQUAL_UINT32(77, pso.evals);
+}
+
+static void test_the_largest_box_and_spread_stay_finite(void) {
+    const float guess[DIM] = {1e30F, -1e30F, 0.0F};
+    use_wide_box(DIM, 1e30F);
+    cfg.guess = guess;
+    cfg.spread = 1e30F;
+    cfg.inertia = AISLE_PSO_FALLING;
+    cfg.c1 = cfg.c2 = 4.0F;
+    cfg.w_start = cfg.w_end = 1.0F;
+    cfg.cost = always;
+    answer = (aisle_pso_cost){0.0F, 1.0F};
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(100)); // expect_in_box() refuses NaN
+}
+
+static void test_never_started_answers_so(void) {
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_pso_step(&pso, 1));
+    TEST_ASSERT_NULL(aisle_pso_best(&pso));
+    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
+}
+
+static void test_invariants_notice_spoilt_fields(void) {
+    cfg.value_goal = -INFINITY;
+    TEST_ASSERT_EQUAL(AISLE_OK, start());
+    (void)aisle_pso_step(&pso, 100);
+    const aisle_pso good = pso;
+#define SPOIL(field, value)                                                                                            \
+    pso.field = (value);                                                                                               \
+    TEST_ASSERT_FALSE_MESSAGE(aisle_pso_invariants_hold(&pso), #field " = " #value);                                   \
+    pso = good
+    SPOIL(next, PARTICLES);
+    SPOIL(evals, cfg.eval_max + 1);
+    SPOIL(nan_costs, 101);
+    SPOIL(best_updates, 101);
+    SPOIL(best_updates, 0);
+    SPOIL(last_improvement, 101);
+    SPOIL(best_cost.value, 1e9F);
+    SPOIL(best_cost.value, NAN);
+    SPOIL(ended, AISLE_OK);
+    const size_t n = (size_t)PARTICLES * DIM; // x, v, best points; best costs; best of all
+    const size_t places[5] = {4, n + 4, 2 * n + 4, 3 * n + 7, 3 * n + 2 * PARTICLES + 1};
+    for (int i = 0; i < 5; i++) {
+        const float was = work[places[i]];
+        work[places[i]] = NAN;
+        TEST_ASSERT_FALSE(aisle_pso_invariants_hold(&pso));
+        work[places[i]] = i == 3 ? -1.0F : 99.0F;
+        TEST_ASSERT_FALSE(aisle_pso_invariants_hold(&pso));
+        work[places[i]] = was;
+    }
+    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
+}
+
+// Recorded once: any other compiler, option or board must give the same bits.
+static void test_bits_are_those_of_every_other_board(void) {
+    uint32_t crc = 0;
+    cfg.value_goal = -INFINITY;
+    cfg.eval_max = 700;
+    for (cfg.seed = 0; cfg.seed < 40; cfg.seed++) {
+        cfg.inertia = cfg.seed % 2 == 0 ? AISLE_PSO_FALLING : AISLE_PSO_CONSTRICTION;
+        cfg.cost = cfg.seed % 3 == 0 ? walled_bowl : bowl;
+        (void)run_in_steps_of(33);
+        for (int i = 0; i < DIM; i++) {
+            uint32_t bits;
+            memcpy(&bits, &aisle_pso_best(&pso)[i], sizeof bits);
+            const uint8_t bytes[4] = {(uint8_t)bits, (uint8_t)(bits >> 8), (uint8_t)(bits >> 16),
+                                      (uint8_t)(bits >> 24)};
+            crc = aisle_crc32(crc, bytes, sizeof bytes);
+        }
+    }
+    TEST_ASSERT_EQUAL_HEX32(0x5AA716EF, crc);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_minimum_on_the_wall_is_found_for_200_of_200_seeds);
+    RUN_TEST(test_minimum_is_found_with_falling_inertia_for_200_of_200_seeds);
+    RUN_TEST(test_rosenbrock_in_2_dimensions_is_hit_for_100_and_99_of_100_seeds);
+    RUN_TEST(test_rosenbrock_in_5_dimensions_is_hit_for_43_and_50_of_50_seeds);
+    RUN_TEST(test_rastrigin_in_3_dimensions_is_hit_for_49_and_50_of_50_seeds);
+    RUN_TEST(test_any_slicing_gives_the_same_bits);
+    RUN_TEST(test_invariants_hold_after_every_evaluation);
+    RUN_TEST(test_seeds_differ);
+    RUN_TEST(test_first_point_asked_about_is_the_guess);
+    RUN_TEST(test_guess_outside_is_clamped_to_the_box);
+    RUN_TEST(test_result_is_never_worse_than_the_guess_for_200_of_200_seeds);
+    RUN_TEST(test_particles_start_within_the_spread_and_fill_it);
+    RUN_TEST(test_feasible_is_better_than_any_value);
+    RUN_TEST(test_violation_comes_first_for_100_of_100_seeds);
+    RUN_TEST(test_goal_is_not_met_by_a_point_that_violates);
+    RUN_TEST(test_nan_rim_is_counted_and_the_minimum_still_found_for_200_of_200_seeds);
+    RUN_TEST(test_a_small_allowed_place_is_looked_for_at_random_until_seen);
+    RUN_TEST(test_nan_everywhere_ends_partial_with_no_best);
+    RUN_TEST(test_infinity_or_nan_in_either_part_is_not_allowed);
+    RUN_TEST(test_negative_violation_is_read_as_feasible);
+    RUN_TEST(test_stall_ends_the_run_that_many_evaluations_after_the_last_gain);
+    RUN_TEST(test_eval_max_is_used_up_and_never_exceeded);
+    RUN_TEST(test_further_steps_repeat_the_answer_and_cost_nothing);
+    RUN_TEST(test_a_step_of_nothing_asks_nothing);
+    RUN_TEST(test_start_calls_no_cost);
+    RUN_TEST(test_counters_count);
+    RUN_TEST(test_falling_inertia_takes_the_stated_defaults);
+    RUN_TEST(test_a_particle_moves_by_the_stated_formula);
+    RUN_TEST(test_start_refuses_each_bad_field_and_leaves_everything_alone);
+    RUN_TEST(test_start_refuses_every_bad_box_and_guess);
+    RUN_TEST(test_start_refuses_work_one_float_short_and_leaves_self_alone);
+    RUN_TEST(test_the_largest_box_and_spread_stay_finite);
+    RUN_TEST(test_never_started_answers_so);
+    RUN_TEST(test_invariants_notice_spoilt_fields);
+    RUN_TEST(test_bits_are_those_of_every_other_board);
+    return UNITY_END();
+}
