@@ -30,7 +30,7 @@ void aisle_loop_init(aisle_loop *self, const aisle_loop_parts *parts) {
     self->slice = fixed != 0 ? fixed : SLICE_FIRST;
     self->next_status_us = self->next_diag_us = now(self);
     self->fault_told_us = now(self) - AISLE_LOOP_FAULT_US;
-    self->path_revision = -1;
+    self->path_seen.revision = -1;
 }
 
 // ---- faults found before the planner
@@ -104,42 +104,16 @@ static void publish(aisle_loop *self, aisle_channel channel, const void *bytes, 
     aisle_histogram_add(&self->timers[AISLE_TIMER_PUBLISH], now(self) - start);
 }
 
-static size_t path_offset(const char *field) {
-    size_t offset = 0;
-    bool found = aisle_msg_field_offset(AISLE_MSG_PATH, field, &offset);
-    AISLE_ASSERT(found);
-    return offset;
-}
-
-static int32_t get_int32(const uint8_t *at) {
-    uint32_t bits = (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | (uint32_t)at[3];
-    int32_t value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-static void put_float(uint8_t *at, float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    for (int i = 0; i < 4; i++) {
-        at[i] = (uint8_t)(bits >> (24 - 8 * i));
-    }
-}
-
 // The planning time of an answer; a renewal of the last path keeps its own.
 static float planning_time(aisle_loop *self, const aisle_event *event) {
-    int32_t revision = get_int32(event->bytes + path_offset("path_revision"));
-    int8_t status = (int8_t)event->bytes[path_offset("status")];
     bool path = event->kind == AISLE_EVENT_PATH;
-    if (path && revision == self->path_revision && status == self->path_status) {
+    if (path && aisle_path_is_renewal(&self->path_seen, event->bytes)) {
         return self->path_planning_time;
     }
     float seconds = (float)self->planning_us * 1e-6F;
     aisle_histogram_add(&self->timers[AISLE_TIMER_REQUEST], self->planning_us);
     self->planning_us = 0;
     if (path) {
-        self->path_revision = revision;
-        self->path_status = status;
         self->path_planning_time = seconds;
     }
     return seconds;
@@ -148,9 +122,9 @@ static float planning_time(aisle_loop *self, const aisle_event *event) {
 static void send_events(aisle_loop *self) {
     aisle_event event;
     while (aisle_planner_next_event(self->parts.planner, &event)) {
-        AISLE_ASSERT(event.size <= sizeof self->out && event.size > path_offset("planning_time") + sizeof(float));
+        AISLE_ASSERT(event.size <= sizeof self->out && event.size > aisle_path_offset("num_waypoints"));
         memcpy(self->out, event.bytes, event.size);
-        put_float(self->out + path_offset("planning_time"), planning_time(self, &event));
+        aisle_path_put_float(self->out, "planning_time", planning_time(self, &event));
         publish(self, event.kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY, self->out, event.size);
         self->progress = true;
     }

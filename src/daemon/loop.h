@@ -24,6 +24,7 @@
 #include "daemon/feed.h"
 #include "daemon/histogram.h"
 #include "daemon/notify.h"
+#include "daemon/path_bytes.h"
 #include "daemon/settings.h"
 
 #define AISLE_LOOP_SLICE_US 2000       // aimed at by the chosen slice
@@ -81,8 +82,7 @@ typedef struct aisle_loop {
     uint32_t slice;                       // work units of the next slice
     int64_t planning_us;                  // spent in step() since the last answer
     int64_t work_units_seen;              // of the planner, at the last look for progress
-    int32_t path_revision;                // of the last path sent
-    int8_t path_status;                   // likewise
+    aisle_path_seen path_seen;            // the last path sent
     float path_planning_time;             // likewise, s
     int64_t malformed, over_limit, stuck; // messages refused: by the decoder, over a bound, by an idle planner
     int64_t bus_faults_seen;
