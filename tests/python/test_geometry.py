@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from aisle import path_t, waypoint_t
 from aisle_tools import geometry, vehicle
-from aisle_tools.check import Obstacles, boundary_boxes, check_path, turn_time
+from aisle_tools.check import Obstacles, boundary_boxes, check_path, placed, turn_time
 from aisle_tools.world import Grid, Polygon, World
 
 
@@ -116,7 +116,9 @@ def test_scan_cells_count_as_closed_squares():
     grid = Grid(-6.0, -6.0, 0.05, occupied)
     report = check_path(good_path(), hall(grid=grid), DISC)
     assert report.clearance == pytest.approx(0.7) and report.ok
-    assert not check_path(good_path(y=1.5), hall(grid=grid), DISC).ok  # deep inside the block of cells
+    occupied[140:, :] = True
+    inside = check_path(good_path(y=4.0), hall(grid=grid), DISC)  # 2 m from any free cell, deep in the block
+    assert inside.clearance == pytest.approx(-0.3) and not inside.ok
 
 
 def test_boundary_boxes_are_the_cells_beside_free_ones():
@@ -129,6 +131,12 @@ def test_boundary_boxes_are_the_cells_beside_free_ones():
 def test_bounds_are_walls():
     world = Obstacles(World("hall", (-6.0, -0.35, 10.0, 6.0)))
     assert check_path(good_path(), world, DISC).clearance == pytest.approx(0.05)
+
+
+def test_footprint_is_placed_by_a_counter_clockwise_turn():
+    body = vehicle.body(vehicle.make({"footprint": [[0, 0], [2, 0], [0, 1]]}))
+    corners = placed(body, np.array([[10.0, 20.0, math.pi / 2]]))[0]
+    assert corners == pytest.approx(np.array([[10.0, 20.0], [10.0, 22.0], [9.0, 20.0]]))
 
 
 def test_rotated_footprint_touches_with_its_corner():

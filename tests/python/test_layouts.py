@@ -65,6 +65,12 @@ def test_tiles_cover_the_grid_once_and_decode_to_it(seed):
     assert [t.part for t in tiles] == list(range(len(tiles))) and {t.num_parts for t in tiles} == {len(tiles)}
 
 
+@pytest.mark.parametrize("size", [95, 96, 97, 192, 193])
+def test_last_row_and_column_get_tiles(size):
+    tiles = layouts.make_tiles(Grid(0.0, 0.0, 0.05, np.zeros((size, size), dtype=bool)), 96)
+    assert sum(t.width * t.height for t in tiles) == size * size
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_both_encodings_round_trip(seed):
     rng = random.Random(100 + seed)

@@ -54,7 +54,10 @@ def test_plot_draws_what_a_log_holds(tmp_path, log, suffix):
 def test_plot_marks_a_refusal_in_red(tmp_path, log):
     writer = LogWriter(log, "AISLE")
     writer.publish("REPLY", reply(1, []))
+    writer.publish("REPLY", reply(2, []))
     writer.close()
+    times = [e[0] for e in read_events(log)]
+    assert times == sorted(set(times))
     out = tmp_path / "p.png"
     assert cli.main(["plot", "--replies", str(log), "--out", str(out)]) == 0
     pixels = np.asarray(Image.open(out).convert("RGB")).reshape(-1, 3)
