@@ -135,8 +135,9 @@ def test_bounds_are_walls():
 
 def test_footprint_is_placed_by_a_counter_clockwise_turn():
     body = vehicle.body(vehicle.make({"footprint": [[0, 0], [2, 0], [0, 1]]}))
-    corners = placed(body, np.array([[10.0, 20.0, math.pi / 2]]))[0]
-    assert corners == pytest.approx(np.array([[10.0, 20.0], [10.0, 22.0], [9.0, 20.0]]))
+    turned, straight = placed(body, np.array([[10.0, 20.0, math.pi / 2], [10.0, 20.0, 0.0]]))
+    assert turned == pytest.approx(np.array([[10.0, 20.0], [10.0, 22.0], [9.0, 20.0]]))
+    assert straight == pytest.approx(np.array([[10.0, 20.0], [12.0, 20.0], [10.0, 21.0]]))
 
 
 def test_rotated_footprint_touches_with_its_corner():
