@@ -912,6 +912,52 @@ static void test_a_layout_not_in_force_is_refused(void) {
     TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill(&vehicle, &layout, path, count, dwell, &sum));
 }
 
+// A needle whose tip is at (x, y), pointing down.
+static void add_needle(float value, double x, double y) {
+    double v[3][2] = {{x, y}, {x + 0.05, y + 1.0}, {x - 0.05, y + 1.0}};
+    (void)add_zone(value, v, 3);
+}
+
+// Is the one piece of the path slowed by the zones?
+static bool is_held(void) {
+    take_zones();
+    fill();
+    const double without = sum.duration;
+    fill_with_zones();
+    return sum.duration > 1.01 * without;
+}
+
+static void test_a_zone_under_the_bulge_of_an_arc_between_its_ends_holds(void) {
+    const aisle_vehicle_msg disc = {.footprint_radius = 0.3F};
+    set_vehicle(&disc);
+    const double bulge = 10.0 - sqrt(100.0 - 0.49 * 0.49); // of a right turn, 12 mm over the chord
+    for (int i = 0; i < 2; i++) {
+        clear_zones();
+        add_needle(1e-3F, 0.49, 0.3 + bulge + (i == 0 ? -1e-4 : 0.0501));
+        count = 0;
+        (void)add(0.0, 0.0, 0.0);
+        add(0.98, 0.0, 0.0)->curvature = -0.1F;
+        TEST_ASSERT_EQUAL_INT(i == 0, is_held());
+    }
+}
+
+static void test_a_zone_under_the_round_of_a_corner_that_turns_holds(void) {
+    const double r = sqrt(0.5 * 0.5 + 0.35 * 0.35), corner = atan2(0.35, 0.5), b = 0.08;
+    clear_zones();
+    add_needle(1e-6F, 0.0, r - 1e-4); // the chord of the corner's way stays 0.49 mm below r
+    (void)add(0.0, 0.0, 0.5 * AISLE_PI - corner - 0.5 * b);
+    (void)add(1e-6, 0.0, 0.5 * AISLE_PI - corner + 0.5 * b);
+    TEST_ASSERT_TRUE(is_held());
+}
+
+static void test_a_zone_over_the_dip_between_corners_that_turn_does_not_hold(void) {
+    clear_zones();
+    add_needle(1e-6F, 0.0, 0.35 / cos(0.195) + 0.051); // the hull of both ends would reach 32 mm beyond
+    (void)add(0.0, 0.0, -0.195);
+    (void)add(1e-6, 0.0, 0.195);
+    TEST_ASSERT_FALSE(is_held());
+}
+
 static double brute_segment_point(aisle_vec2 a, aisle_vec2 b, aisle_vec2 p) {
     const double sx = b.x - a.x, sy = b.y - a.y, square = sx * sx + sy * sy;
     const double along = square > 0.0 ? fmin(1.0, fmax(0.0, ((p.x - a.x) * sx + (p.y - a.y) * sy) / square)) : 0.0;
@@ -1064,6 +1110,9 @@ int main(void) {
     RUN_TEST(test_other_kinds_of_areas_set_no_limit);
     RUN_TEST(test_a_turn_on_the_spot_in_a_zone_takes_its_time_as_ever);
     RUN_TEST(test_a_layout_not_in_force_is_refused);
+    RUN_TEST(test_a_zone_under_the_bulge_of_an_arc_between_its_ends_holds);
+    RUN_TEST(test_a_zone_under_the_round_of_a_corner_that_turns_holds);
+    RUN_TEST(test_a_zone_over_the_dip_between_corners_that_turn_does_not_hold);
     RUN_TEST(test_zones_agree_with_brute_force_for_2000_of_2000_pieces);
     return UNITY_END();
 }
