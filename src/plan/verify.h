@@ -30,7 +30,7 @@
 //   them, the last one at the last waypoint. A goal with dwell is a stop;
 // - s and t start at 0; s is the sum of lengths (1e-4 m + 3e-5 s); t strictly rising and fits length and speeds: 2 L / (v0 + v1) each
 //   piece (at most 1.1 ms longer: times are 1 ms apart), both ends at rest: no shorter than the trapezoid;
-// - speeds in [0, v_max or v_reverse_max], |v1^2 - v0^2| <= 2 L a_max or d_max, `a` of the piece that ends there within them,
+// - speeds in [0, v_max or v_reverse_max], |v1^2 - v0^2| <= 2 L a_max or d_max, `a` = that / 2 L on the piece that ends there,
 //   v^2 |k| <= lateral_a_max, v |turn| / L <= omega_max, turns on the spot no faster than omega_max and alpha_max let them;
 // - |k| <= curvature_max if that is not 0; a turn on the spot (but for a mere wait) only if it is 0;
 // - heading within 2e-3 rad of the direction of motion at both ends of a piece (backwards with REVERSE) and turning as the

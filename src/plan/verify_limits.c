@@ -112,12 +112,13 @@ static aisle_verify_fault speed_fault(const aisle_vehicle *vehicle, const aisle_
 
 static aisle_verify_fault acceleration_fault(const aisle_verify *self, uint32_t i) {
     const aisle_vehicle *vehicle = self->request.vehicle;
-    double v0 = (double)self->path->waypoints[i - 1].v, v1 = (double)self->path->waypoints[i].v;
-    double gain = v1 * v1 - v0 * v0, slack = 4.0 * (double)FLT_EPSILON * self->piece.peak * self->piece.peak;
-    double a = (double)self->path->waypoints[i].a;
-    bool ok = self->piece.on_spot || (is_within(gain - slack, 2.0 * vehicle->a_max * self->piece.length) &&
-                                      is_within(-gain - slack, 2.0 * vehicle->d_max * self->piece.length));
-    ok = ok && is_within(a, vehicle->a_max) && is_within(-a, vehicle->d_max);
+    const aisle_waypoint_msg *from = &self->path->waypoints[i - 1], *to = &self->path->waypoints[i];
+    double way = 2.0 * self->piece.length, peak = self->piece.peak;
+    double gain = (double)to->v * (double)to->v - (double)from->v * (double)from->v;
+    double slack = 4.0 * (double)FLT_EPSILON * peak * peak;
+    bool ok = is_within(gain - slack, vehicle->a_max * way) && is_within(-gain - slack, vehicle->d_max * way);
+    ok = ok && fabs((double)to->a * way - gain) <= VERIFY_TOLERANCE * fabs(gain) + slack;
+    ok = ok && is_within((double)to->a, vehicle->a_max) && is_within(-(double)to->a, vehicle->d_max);
     return ok ? AISLE_VERIFY_NONE : AISLE_VERIFY_ACCELERATION;
 }
 

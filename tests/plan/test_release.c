@@ -1,0 +1,145 @@
+#include "test_verify_fixture.h"
+
+static aisle_event event;
+static const aisle_event untouched = {AISLE_EVENT_REPLY, NULL, 77};
+
+static void proved_path(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_line(1.0);
+    path_arc(0.5, 1.0);
+    path_end();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+}
+
+static aisle_status release(void) {
+    event = untouched;
+    return aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, &event);
+}
+
+static void assert_refused(void) {
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, release());
+    TEST_ASSERT_EQUAL_MEMORY(&untouched, &event, sizeof event);
+}
+
+void setUp(void) {
+    world_begin(-20.0, -20.0, 20.0, 20.0, 0.5F);
+    world_build();
+    vehicle_disc(0.3);
+    proved_path();
+}
+void tearDown(void) {}
+
+static void test_the_bytes_that_were_proved_leave(void) {
+    TEST_ASSERT_EQUAL(AISLE_OK, release());
+    TEST_ASSERT_EQUAL(AISLE_EVENT_PATH, event.kind);
+    TEST_ASSERT_EQUAL_PTR(path_bytes, event.bytes);
+    TEST_ASSERT_EQUAL_size_t(path_size, event.size);
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_REPLY, path_bytes, path_size, &stamp, &event));
+    TEST_ASSERT_EQUAL(AISLE_EVENT_REPLY, event.kind);
+}
+
+static void test_a_renewed_lease_leaves(void) {
+    const char *names[2] = {"utime", "valid_until_utime"};
+    for (int i = 0; i < 2; i++) {
+        size_t offset = 0;
+        TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, names[i], &offset));
+        aisle_msg_put_int64(path_bytes + offset, 1234567890123456789);
+        TEST_ASSERT_EQUAL(AISLE_OK, release());
+    }
+}
+
+static void test_any_other_byte_changed_stays(void) {
+    size_t utime = 0, until = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "utime", &utime));
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "valid_until_utime", &until));
+    for (size_t i = 0; i < path_size; i++) {
+        bool lease = (i >= utime && i < utime + 8) || (i >= until && i < until + 8);
+        path_bytes[i] ^= 0x10U;
+        TEST_ASSERT_EQUAL(lease ? AISLE_OK : AISLE_ERR_ARG, release());
+        path_bytes[i] ^= 0x10U;
+    }
+}
+
+static void test_other_sizes_stay(void) {
+    size_t whole = path_size;
+    for (path_size = 0; path_size < whole; path_size++) {
+        assert_refused();
+    }
+    path_bytes[whole] = 0;
+    path_size = whole + 1;
+    assert_refused();
+}
+
+static void test_without_a_stamp_nothing_to_drive_leaves(void) {
+    aisle_stamp right = stamp;
+    stamp = (aisle_stamp){0, 0};
+    assert_refused();
+    stamp = (aisle_stamp){right.crc, 0};
+    assert_refused();
+    stamp = (aisle_stamp){right.crc ^ 1U, right.size};
+    assert_refused();
+    event = untouched;
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &event));
+    TEST_ASSERT_EQUAL_MEMORY(&untouched, &event, sizeof event);
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, NULL, path_size, &right, &event));
+}
+
+static void test_a_refused_path_gets_no_stamp_that_releases_it(void) {
+    path.waypoints[1].v = 5.0F;
+    path_seal();
+    TEST_ASSERT_NOT_EQUAL(AISLE_VERIFY_NONE, verified());
+    assert_refused();
+}
+
+static void test_a_revocation_needs_no_stamp(void) {
+    memset(&path, 0, sizeof path);
+    path.status = AISLE_PATH_NONE;
+    path.cause = AISLE_STATUS_NO_PATH;
+    path_seal();
+    event = untouched;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &event));
+    TEST_ASSERT_EQUAL_size_t(path_size, event.size);
+    stamp = (aisle_stamp){0, 0};
+    TEST_ASSERT_EQUAL(AISLE_OK, release());
+    path_bytes[0] ^= 1U; // not a path_t
+    assert_refused();
+}
+
+static void test_status_none_with_waypoints_and_ok_without_stay(void) {
+    stamp = (aisle_stamp){0, 0};
+    path.status = AISLE_PATH_NONE;
+    path_seal();
+    assert_refused();
+    path.num_waypoints = 0;
+    for (int8_t status = AISLE_PATH_OK; status < AISLE_PATH_NONE; status++) {
+        path.status = status;
+        path_seal();
+        assert_refused();
+    }
+}
+
+static void test_the_certificate_is_the_crc_of_encoded_waypoints_and_revisions(void) {
+    const int32_t numbers[7] = {21, 22, 23, 24, world_msg.map_id, world_msg.map_revision, vehicle.revision};
+    size_t offset = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "waypoints", &offset));
+    uint32_t crc = aisle_crc32(0, path_bytes + offset, path_size - offset);
+    for (int i = 0; i < 7; i++) {
+        const uint8_t bytes[4] = {0, 0, 0, (uint8_t)numbers[i]};
+        crc = aisle_crc32(crc, bytes, 4);
+    }
+    TEST_ASSERT_EQUAL_HEX32(crc, aisle_path_certificate(&path));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_the_bytes_that_were_proved_leave);
+    RUN_TEST(test_a_renewed_lease_leaves);
+    RUN_TEST(test_any_other_byte_changed_stays);
+    RUN_TEST(test_other_sizes_stay);
+    RUN_TEST(test_without_a_stamp_nothing_to_drive_leaves);
+    RUN_TEST(test_a_refused_path_gets_no_stamp_that_releases_it);
+    RUN_TEST(test_a_revocation_needs_no_stamp);
+    RUN_TEST(test_status_none_with_waypoints_and_ok_without_stay);
+    RUN_TEST(test_the_certificate_is_the_crc_of_encoded_waypoints_and_revisions);
+    return UNITY_END();
+}

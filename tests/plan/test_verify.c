@@ -1,0 +1,398 @@
+#include "test_verify_fixture.h"
+
+static aisle_goal_msg goals[3];
+
+static void usual_world(void) {
+    world_begin(-20.0, -20.0, 20.0, 20.0, 0.5F);
+    (void)world_box(AISLE_POLYGON_OBSTACLE, 1.0, 1.0, 2.0, 2.0);
+    world_build();
+    vehicle_box(0.5, 0.5, 0.7, 0.0);
+}
+
+// Lines and an arc past the box, with goals 11 and 12 at waypoints 2 and 4 and the last one at the end.
+static void usual_path(void) {
+    path_begin(-2.0, 0.0, 0.0);
+    path_line(1.0);
+    path_line(1.0);
+    path_arc(-0.5, 0.5);
+    path_line(1.0);
+    path_line(1.5);
+    path_end();
+    const int places[3] = {2, 4, 5};
+    for (int i = 0; i < 3; i++) {
+        aisle_waypoint_msg *w = &path.waypoints[places[i]];
+        w->flags |= AISLE_WAYPOINT_GOAL;
+        w->goal_id = i < 2 ? 11 + i : GOAL_ID;
+        goals[i] = (aisle_goal_msg){.id = w->goal_id, .x = w->x, .y = w->y, .theta = w->theta};
+    }
+    path_seal();
+}
+
+static aisle_verify_request request_of_three(void) {
+    aisle_verify_request request = usual_request();
+    request.goals = goals;
+    request.num_goals = 3;
+    return request;
+}
+
+static void assert_fault(aisle_verify_fault fault) {
+    aisle_verify_request request = request_of_three();
+    (void)verify_request(&request, UINT32_MAX);
+    TEST_ASSERT_EQUAL(fault, verify.fault);
+}
+
+void setUp(void) {
+    usual_world();
+    usual_path();
+    assert_fault(AISLE_VERIFY_NONE);
+}
+void tearDown(void) {}
+
+// ---- bytes
+
+static void test_every_truncation_is_refused(void) {
+    size_t whole = path_size;
+    for (path_size = 0; path_size < whole; path_size++) {
+        assert_fault(AISLE_VERIFY_DECODE);
+    }
+}
+
+static void test_bytes_left_over_are_refused(void) {
+    path_bytes[path_size++] = 0;
+    assert_fault(AISLE_VERIFY_DECODE);
+}
+
+static void test_not_a_number_anywhere_is_refused(void) {
+    const uint8_t nan_bytes[8] = {0x7F, 0xF8, 0, 0, 0, 0, 0, 0};
+    size_t offset = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "waypoints", &offset));
+    for (int number = 0; number < 3; number++) { // x, y, theta of the first
+        path_seal();
+        memcpy(path_bytes + offset + 8 * number, nan_bytes, 8);
+        assert_fault(AISLE_VERIFY_DECODE);
+    }
+    for (int number = 0; number < 6; number++) {
+        path_seal();
+        memcpy(path_bytes + offset + 24 + 4 * number, nan_bytes, 4);
+        assert_fault(AISLE_VERIFY_DECODE);
+    }
+}
+
+static void test_any_bit_turned_over_is_refused_but_in_the_lease(void) {
+    size_t utime = 0, until = 0, refused = 0, passed = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "utime", &utime));
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "valid_until_utime", &until));
+    size_t first = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "num_waypoints", &first));
+    for (size_t bit = first * 8; bit < path_size * 8; bit++) { // of the waypoints: all are under the certificate
+        path_bytes[bit / 8] ^= (uint8_t)(1U << (bit % 8));
+        aisle_verify_request request = request_of_three();
+        if (verify_request(&request, UINT32_MAX) == AISLE_OK) {
+            passed++;
+        } else {
+            refused++;
+        }
+        path_bytes[bit / 8] ^= (uint8_t)(1U << (bit % 8));
+    }
+    TEST_ASSERT_EQUAL_size_t(0, passed);
+    TEST_ASSERT_EQUAL_size_t((path_size - first) * 8, refused);
+    path_bytes[utime + 7] ^= 1U;
+    path_bytes[until + 7] ^= 1U;
+    assert_fault(AISLE_VERIFY_NONE);
+}
+
+static void test_status_and_counts_must_be_those_of_a_path(void) {
+    const int8_t fit[3] = {AISLE_PATH_OK, AISLE_PATH_PARTIAL, AISLE_PATH_STOP};
+    for (int i = 0; i < 3; i++) {
+        path.status = fit[i];
+        path_seal();
+        assert_fault(AISLE_VERIFY_NONE);
+    }
+    const int8_t unfit[3] = {AISLE_PATH_NONE, -1, 4};
+    for (int i = 0; i < 3; i++) {
+        path.status = unfit[i];
+        path_seal();
+        assert_fault(AISLE_VERIFY_DECODE);
+    }
+    path.status = AISLE_PATH_OK;
+    path.num_base = 6;
+    path_seal();
+    assert_fault(AISLE_VERIFY_NONE);
+    path.num_base = 7;
+    path_seal();
+    assert_fault(AISLE_VERIFY_DECODE);
+    path.num_base = -1;
+    path_seal();
+    assert_fault(AISLE_VERIFY_DECODE);
+    path.num_base = 0;
+    path.num_waypoints = 0;
+    path_seal();
+    aisle_verify_request request = request_of_three();
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, verify_request(&request, UINT32_MAX));
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_DECODE, verify.fault);
+}
+
+static void test_figures_of_the_header_make_sense(void) {
+    float *figures[4] = {&path.energy, &path.risk, &path.clearance_moving_min, &path.planning_time};
+    for (int i = 0; i < 4; i++) {
+        *figures[i] = -1.0F;
+        path_seal();
+        assert_fault(AISLE_VERIFY_DECODE);
+        *figures[i] = 0.5F;
+        path_seal();
+        assert_fault(AISLE_VERIFY_NONE);
+    }
+    path.risk = 1.5F;
+    path_seal();
+    assert_fault(AISLE_VERIFY_DECODE);
+}
+
+static void test_bytes_that_change_during_the_proof_are_refused(void) {
+    aisle_verify_request request = request_of_three();
+    aisle_verify_start(&verify, &request, &verify_scratch);
+    TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_verify_step(&verify, 3, &spent, &stamp));
+    path_bytes[path_size - 1] ^= 1U;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, aisle_verify_step(&verify, UINT32_MAX, &spent, &stamp));
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_DECODE, verify.fault);
+    TEST_ASSERT_EQUAL_UINT32(0, stamp.size);
+}
+
+// ---- start, goals
+
+static void test_the_path_begins_at_the_start(void) {
+    const aisle_pose2 off[4] = {{2e-6, 0.0, 0.0}, {0.0, -2e-6, 0.0}, {0.0, 0.0, 2e-6}, {5e-7, -5e-7, 2.0 * AISLE_PI}};
+    for (int i = 0; i < 4; i++) {
+        aisle_verify_request request = request_of_three();
+        request.start.x += off[i].x;
+        request.start.y += off[i].y;
+        request.start.theta += off[i].theta;
+        (void)verify_request(&request, UINT32_MAX);
+        TEST_ASSERT_EQUAL(i < 3 ? AISLE_VERIFY_START : AISLE_VERIFY_NONE, verify.fault);
+    }
+}
+
+static void test_goals_are_met_within_their_tolerance(void) {
+    goals[1].x += 0.049;
+    assert_fault(AISLE_VERIFY_NONE);
+    goals[1].x += 0.002;
+    assert_fault(AISLE_VERIFY_GOAL);
+    TEST_ASSERT_EQUAL_UINT32(4, verify.fault_waypoint);
+    goals[1].tolerance_xy = 0.06F;
+    assert_fault(AISLE_VERIFY_NONE);
+    goals[1].theta += 0.051;
+    assert_fault(AISLE_VERIFY_GOAL);
+    goals[1].tolerance_theta = 0.06F;
+    assert_fault(AISLE_VERIFY_NONE);
+    goals[1].theta = goals[1].theta + 3.0;
+    goals[1].tolerance_theta = (float)AISLE_PI;
+    assert_fault(AISLE_VERIFY_NONE);
+}
+
+static void test_goals_come_in_order_and_all(void) {
+    aisle_goal_msg swap = goals[0];
+    goals[0] = goals[1];
+    goals[1] = swap;
+    assert_fault(AISLE_VERIFY_GOAL);
+    usual_path();
+    path.waypoints[2].flags = 0; // passes the first unseen
+    path_seal();
+    assert_fault(AISLE_VERIFY_GOAL);
+    usual_path();
+    path.waypoints[5].flags &= (int16_t)~AISLE_WAYPOINT_GOAL; // never says it arrived
+    path_seal();
+    assert_fault(AISLE_VERIFY_GOAL);
+    path.status = AISLE_PATH_PARTIAL;
+    path_seal();
+    assert_fault(AISLE_VERIFY_NONE);
+}
+
+static void test_more_goals_than_asked_and_none_at_all_are_refused(void) {
+    aisle_verify_request request = request_of_three();
+    request.num_goals = 2;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, verify_request(&request, UINT32_MAX));
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_GOAL, verify.fault);
+    for (int i = 0; i < path.num_waypoints; i++) {
+        path.waypoints[i].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
+    }
+    path_seal();
+    request = request_of_three();
+    request.num_goals = 0;
+    request.goals = NULL;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, verify_request(&request, UINT32_MAX));
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_GOAL, verify.fault);
+    path.status = AISLE_PATH_STOP;
+    path_seal();
+    request = request_of_three();
+    request.num_goals = 0;
+    request.goals = NULL;
+    TEST_ASSERT_EQUAL(AISLE_OK, verify_request(&request, UINT32_MAX));
+}
+
+static void test_the_last_goal_is_at_the_last_waypoint(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_line(1.0);
+    path_line(1.0);
+    path_end();
+    path.waypoints[1].flags |= AISLE_WAYPOINT_GOAL;
+    path.waypoints[1].goal_id = GOAL_ID;
+    path.waypoints[2].flags = 0;
+    path_goal.x = path.waypoints[1].x;
+    path_seal();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_GOAL, verified());
+    TEST_ASSERT_EQUAL_UINT32(2, verify.fault_waypoint);
+}
+
+static void test_a_goal_with_dwell_is_a_stop(void) {
+    path_drive(0.3);
+    assert_fault(AISLE_VERIFY_NONE);
+    goals[1].dwell = 1.0F;
+    assert_fault(AISLE_VERIFY_REST);
+    TEST_ASSERT_EQUAL_UINT32(4, verify.fault_waypoint);
+}
+
+// ---- sums, certificate
+
+static void test_sums_fit_the_waypoints(void) {
+    float *sums[2] = {&path.length, &path.duration};
+    for (int i = 0; i < 2; i++) {
+        float was = *sums[i];
+        *sums[i] = was * 1.0005F;
+        path_seal();
+        assert_fault(AISLE_VERIFY_SUMS);
+        *sums[i] = was * 1.00001F;
+        path_seal();
+        assert_fault(AISLE_VERIFY_NONE);
+        *sums[i] = was;
+    }
+    path.length_bound = path.length;
+    path_seal();
+    assert_fault(AISLE_VERIFY_NONE);
+    path.length_bound = path.length * 1.0001F;
+    path_seal();
+    assert_fault(AISLE_VERIFY_SUMS);
+}
+
+static void test_certificate_and_revisions_are_those_proved_against(void) {
+    path.certificate ^= 1;
+    size_t size = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_encode(AISLE_MSG_PATH, &path, path_bytes, sizeof path_bytes, &size));
+    assert_fault(AISLE_VERIFY_CERTIFICATE);
+    path_seal();
+    world_msg.map_revision++; // another one than the layout in force
+    path_seal();
+    assert_fault(AISLE_VERIFY_CERTIFICATE);
+    world_msg.map_revision--;
+    world_msg.map_id++;
+    path_seal();
+    assert_fault(AISLE_VERIFY_CERTIFICATE);
+    world_msg.map_id--;
+    path_seal();
+    vehicle.revision++;
+    assert_fault(AISLE_VERIFY_CERTIFICATE);
+}
+
+static void test_a_layout_that_changes_during_the_proof_ends_it(void) {
+    aisle_verify_request request = request_of_three();
+    aisle_verify_start(&verify, &request, &verify_scratch);
+    TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_verify_step(&verify, 3, &spent, &stamp));
+    aisle_refusal why;
+    world_msg.map_revision++;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_part(&world, &world_msg, &why));
+    aisle_layout_commit(&world);
+    while (aisle_layout_build(&world, 100000) == AISLE_BUSY) {
+    }
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, aisle_verify_step(&verify, UINT32_MAX, &spent, &stamp));
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_CERTIFICATE, verify.fault);
+    TEST_ASSERT_EQUAL_UINT32(0, stamp.size);
+}
+
+// ---- slices
+
+typedef struct outcome { // no padding: compared as memory
+    int64_t calls;
+    aisle_stamp stamp;
+    aisle_verify_fault fault;
+    uint32_t waypoint, intervals, spent, support_max;
+    int32_t id;
+} outcome;
+
+static outcome outcome_in_steps_of(uint32_t units) {
+    aisle_verify_request request = usual_request();
+    (void)verify_request(&request, units);
+    return (outcome){.calls = verify.collide.calls,
+                     .stamp = stamp,
+                     .fault = verify.fault,
+                     .waypoint = verify.fault_waypoint,
+                     .intervals = verify.intervals,
+                     .spent = spent,
+                     .support_max = verify.collide.support_max,
+                     .id = verify.fault_id};
+}
+
+static void assert_same_in_any_slices(void) {
+    const outcome whole = outcome_in_steps_of(UINT32_MAX);
+    for (uint32_t units = 1; units < 30; units++) {
+        const outcome sliced = outcome_in_steps_of(units);
+        TEST_ASSERT_EQUAL_MEMORY(&whole, &sliced, sizeof whole);
+    }
+}
+
+static void test_any_slicing_gives_the_same_answer_and_counts(void) {
+    path_begin(0.0, 0.2, 0.0);
+    path_line(0.5);
+    path_arc(1.0, 0.7);
+    path_line(2.0);
+    path_end();
+    assert_same_in_any_slices(); // into the box
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_COLLISION, verify.fault);
+    path_begin(0.0, 0.4, 0.0);
+    path_line(3.0);
+    path_turn(2.0);
+    path_end();
+    vehicle.margin = 0.2;
+    assert_same_in_any_slices(); // past it, with many intervals
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verify.fault);
+    path.waypoints[1].v = 1.0F;
+    path_seal();
+    assert_same_in_any_slices(); // never gets to the motion
+    TEST_ASSERT_EQUAL_UINT32(0, verify.intervals);
+}
+
+static void test_the_answer_is_repeated_and_costs_nothing(void) {
+    aisle_verify_request request = request_of_three();
+    TEST_ASSERT_EQUAL(AISLE_OK, verify_request(&request, 1));
+    aisle_stamp first = stamp;
+    uint32_t more = 0;
+    stamp = (aisle_stamp){0, 0};
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_verify_step(&verify, 5, &more, &stamp));
+    TEST_ASSERT_EQUAL_UINT32(0, more);
+    TEST_ASSERT_EQUAL_MEMORY(&first, &stamp, sizeof first);
+    request.start.x += 1.0;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, verify_request(&request, 1));
+    stamp = first;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, aisle_verify_step(&verify, 5, &more, &stamp));
+    TEST_ASSERT_EQUAL_UINT32(0, stamp.size);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_every_truncation_is_refused);
+    RUN_TEST(test_bytes_left_over_are_refused);
+    RUN_TEST(test_not_a_number_anywhere_is_refused);
+    RUN_TEST(test_any_bit_turned_over_is_refused_but_in_the_lease);
+    RUN_TEST(test_status_and_counts_must_be_those_of_a_path);
+    RUN_TEST(test_figures_of_the_header_make_sense);
+    RUN_TEST(test_bytes_that_change_during_the_proof_are_refused);
+    RUN_TEST(test_the_path_begins_at_the_start);
+    RUN_TEST(test_goals_are_met_within_their_tolerance);
+    RUN_TEST(test_goals_come_in_order_and_all);
+    RUN_TEST(test_more_goals_than_asked_and_none_at_all_are_refused);
+    RUN_TEST(test_the_last_goal_is_at_the_last_waypoint);
+    RUN_TEST(test_a_goal_with_dwell_is_a_stop);
+    RUN_TEST(test_sums_fit_the_waypoints);
+    RUN_TEST(test_certificate_and_revisions_are_those_proved_against);
+    RUN_TEST(test_a_layout_that_changes_during_the_proof_ends_it);
+    RUN_TEST(test_any_slicing_gives_the_same_answer_and_counts);
+    RUN_TEST(test_the_answer_is_repeated_and_costs_nothing);
+    return UNITY_END();
+}
