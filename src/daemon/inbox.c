@@ -29,6 +29,10 @@ void aisle_inbox_init(aisle_inbox *self, void *ring, size_t capacity) {
     self->capacity = capacity & ~(size_t)7U;
 }
 
+static bool is_firm(aisle_channel channel) {
+    return channel == AISLE_CHANNEL_GOALS || channel == AISLE_CHANNEL_COMMAND;
+}
+
 // Appends to the ring; an entry never straddles its end.
 static aisle_status push(aisle_inbox *self, aisle_channel channel, const void *bytes, size_t size) {
     size_t need = padded(size), tail = (self->head + self->used) % self->capacity;
@@ -48,7 +52,7 @@ static aisle_status push(aisle_inbox *self, aisle_channel channel, const void *b
     self->used += skip + need;
     self->used_max = self->used > self->used_max ? self->used : self->used_max;
     self->waiting++;
-    self->waiting_queries += channel == AISLE_CHANNEL_QUERY ? 1U : 0U;
+    self->waiting_firm += is_firm(channel) ? 1U : 0U;
     return AISLE_OK;
 }
 
@@ -83,8 +87,7 @@ static int oldest_slot(const aisle_inbox *self, int first) {
 
 // Moves the snapshots an ordered message may rest on in front of it. A lost one is like one lost on the bus.
 static void pin_snapshots(aisle_inbox *self, aisle_channel channel) {
-    bool all = channel == AISLE_CHANNEL_GOALS || channel == AISLE_CHANNEL_COMMAND;
-    if (!all) {
+    if (channel != AISLE_CHANNEL_GOALS) {
         aisle_inbox_slot *vehicle = &self->slots[AISLE_INBOX_SLOT_VEHICLE];
         if (vehicle->order != 0) {
             (void)push(self, AISLE_CHANNEL_VEHICLE, vehicle->bytes, vehicle->size);
@@ -98,12 +101,27 @@ static void pin_snapshots(aisle_inbox *self, aisle_channel channel) {
     }
 }
 
+// True: the command may overtake, for neither goals nor commands wait in the ring, and there is room.
+static bool push_command(aisle_inbox *self, const void *bytes, size_t size) {
+    if (self->waiting_firm > 0 || size > AISLE_INBOX_COMMAND_SIZE || self->command_count == AISLE_INBOX_COMMANDS) {
+        return false;
+    }
+    aisle_inbox_command *command = &self->commands[(self->command_head + self->command_count) % AISLE_INBOX_COMMANDS];
+    command->size = (uint32_t)size;
+    memcpy(command->bytes, bytes, size);
+    self->command_count++;
+    return true;
+}
+
 aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, const void *bytes, size_t size) {
     AISLE_ASSERT((int)channel < AISLE_CHANNEL_INPUTS);
     self->received++;
     if (size > AISLE_MSG_DATAGRAM_MAX) {
         self->oversize++;
         return AISLE_ERR_DATA;
+    }
+    if (channel == AISLE_CHANNEL_COMMAND && push_command(self, bytes, size)) {
+        return AISLE_OK;
     }
     if (!aisle_channel_is_snapshot(channel)) {
         pin_snapshots(self, channel);
@@ -132,21 +150,28 @@ static size_t head_of(const aisle_inbox *self) {
 }
 
 bool aisle_inbox_peek(const aisle_inbox *self, aisle_inbox_message *out) {
+    if (self->command_count > 0) {
+        const aisle_inbox_command *command = &self->commands[self->command_head];
+        *out = (aisle_inbox_message){.channel = AISLE_CHANNEL_COMMAND,
+                                     .bytes = command->bytes,
+                                     .size = command->size,
+                                     .slot = AISLE_INBOX_IN_COMMANDS};
+        return true;
+    }
     if (self->waiting == 0) {
         return peek_slot(self, oldest_slot(self, 0), out);
     }
     size_t at = head_of(self);
     entry e = entry_at(self, at);
-    *out = (aisle_inbox_message){
-        .channel = (aisle_channel)e.channel, .bytes = self->ring + at + sizeof e, .size = e.size, .slot = -1};
+    *out = (aisle_inbox_message){.channel = (aisle_channel)e.channel,
+                                 .bytes = self->ring + at + sizeof e,
+                                 .size = e.size,
+                                 .slot = AISLE_INBOX_IN_RING};
     return true;
 }
 
-bool aisle_inbox_peek_past_queries(const aisle_inbox *self, aisle_inbox_message *out) {
-    if (self->waiting != self->waiting_queries) {
-        return false;
-    }
-    return peek_slot(self, oldest_slot(self, AISLE_INBOX_SLOT_POSE), out);
+bool aisle_inbox_peek_overtaking(const aisle_inbox *self, aisle_inbox_message *out) {
+    return self->waiting_firm == 0 && peek_slot(self, oldest_slot(self, AISLE_INBOX_SLOT_POSE), out);
 }
 
 void aisle_inbox_pop(aisle_inbox *self, const aisle_inbox_message *message) {
@@ -154,11 +179,17 @@ void aisle_inbox_pop(aisle_inbox *self, const aisle_inbox_message *message) {
         self->slots[message->slot].order = 0;
         return;
     }
+    if (message->slot == AISLE_INBOX_IN_COMMANDS) {
+        AISLE_ASSERT(self->command_count > 0);
+        self->command_head = (self->command_head + 1U) % AISLE_INBOX_COMMANDS;
+        self->command_count--;
+        return;
+    }
     AISLE_ASSERT(self->waiting > 0);
     size_t at = head_of(self), skipped = at == self->head ? 0 : self->capacity - self->head;
     size_t length = padded(message->size);
     self->waiting--;
-    self->waiting_queries -= message->channel == AISLE_CHANNEL_QUERY ? 1U : 0U;
+    self->waiting_firm -= is_firm(message->channel) ? 1U : 0U;
     self->used -= skipped + length;
     self->head = self->waiting == 0 ? 0 : (at + length) % self->capacity;
     AISLE_ASSERT(self->waiting != 0 || self->used == 0);
@@ -166,7 +197,7 @@ void aisle_inbox_pop(aisle_inbox *self, const aisle_inbox_message *message) {
 
 bool aisle_inbox_invariants_hold(const aisle_inbox *self) {
     size_t at = self->head, sum = 0;
-    uint32_t queries = 0;
+    uint32_t firm = 0;
     for (uint32_t i = 0; i < self->waiting; i++) {
         if (at % 8U != 0 || at >= self->capacity) {
             return false;
@@ -181,8 +212,9 @@ bool aisle_inbox_invariants_hold(const aisle_inbox *self) {
             return false;
         }
         sum += padded(e.size);
-        queries += e.channel == (uint32_t)AISLE_CHANNEL_QUERY ? 1U : 0U;
+        firm += is_firm((aisle_channel)e.channel) ? 1U : 0U;
         at = (at + padded(e.size)) % self->capacity;
     }
-    return sum == self->used && queries == self->waiting_queries && self->used <= self->capacity;
+    return sum == self->used && firm == self->waiting_firm && self->used <= self->capacity &&
+           self->command_count <= AISLE_INBOX_COMMANDS && self->command_head < AISLE_INBOX_COMMANDS;
 }

@@ -4,10 +4,10 @@
 // as they went in; when the ring is full the message is refused and counted. Snapshots (vehicle, pose, obstacles of a
 // source) have one slot each, in which a newer one replaces an older one.
 //
-// Order: what comes out is what went in, but for replaced snapshots. A snapshot that an ordered message behind it may
-// rest on is no longer replaced: it moves into the ring, in front of that message. That holds for all but pose and
-// obstacles before a query, layout part, patch or grid tile, which do not depend on them. So the answers are those of a
-// planner that saw every message in the order of arrival, and a log of the bus can be replayed to the same bytes.
+// Order: what comes out is what went in, but for replaced snapshots and what may overtake. A snapshot that an ordered
+// message behind it rests on is no longer replaced: it moves into the ring, in front of that message. Goals rest on all
+// of them, the others on the vehicle alone. Commands concern goals alone, so they overtake everything else. So the
+// answers are those of a planner that saw every message in the order of arrival, and a log of the bus can be replayed.
 //
 // Memory: the struct (about 450 kB of slots) and the caller's ring. Time: put and take O(size of the message).
 // Threads: one.
@@ -22,11 +22,21 @@
 #include <stdint.h>
 
 enum {
-    AISLE_INBOX_SLOT_VEHICLE,
+    AISLE_INBOX_IN_RING = -1,
+    AISLE_INBOX_IN_COMMANDS = -2,
+    AISLE_INBOX_SLOT_VEHICLE = 0,
     AISLE_INBOX_SLOT_POSE,
     AISLE_INBOX_SLOT_OBSTACLES, // one per source and one for sources there should not be: the decoder refuses them
     AISLE_INBOX_SLOTS = AISLE_INBOX_SLOT_OBSTACLES + AISLE_OBSTACLES_MAX_SOURCES + 1
 };
+
+#define AISLE_INBOX_COMMANDS 32     // that may overtake; more go into the ring
+#define AISLE_INBOX_COMMAND_SIZE 64 // bytes, more than a command_t has
+
+typedef struct aisle_inbox_command {
+    uint32_t size;
+    uint8_t bytes[AISLE_INBOX_COMMAND_SIZE];
+} aisle_inbox_command;
 
 typedef struct aisle_inbox_slot {
     uint64_t order; // of arrival; 0 = empty
@@ -39,8 +49,10 @@ typedef struct aisle_inbox {
     uint8_t *ring;
     size_t capacity, head, used; // bytes; used counts padding
     uint32_t waiting;            // messages in the ring
-    uint32_t waiting_queries;    // of them
-    uint64_t order;              // of the last arrival
+    uint32_t waiting_firm;       // of them: goals, and commands behind goals; nothing overtakes these
+    uint32_t command_head, command_count;
+    aisle_inbox_command commands[AISLE_INBOX_COMMANDS];
+    uint64_t order; // of the last arrival
     aisle_inbox_slot slots[AISLE_INBOX_SLOTS];
     int64_t received;                      // put() calls
     int64_t replaced;                      // snapshots replaced by a newer one
@@ -53,7 +65,7 @@ typedef struct aisle_inbox_message {
     aisle_channel channel;
     const uint8_t *bytes; // until the next put() or pop()
     size_t size;
-    int slot; // where it lies: AISLE_INBOX_SLOT_..., or -1 = the ring
+    int slot; // where it lies: AISLE_INBOX_SLOT_..., AISLE_INBOX_IN_RING or AISLE_INBOX_IN_COMMANDS
 } aisle_inbox_message;
 
 // ring: aligned to 8, at least 2 * AISLE_MSG_DATAGRAM_MAX bytes; the caller's as long as the inbox.
@@ -66,9 +78,9 @@ aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, const voi
 // The next message in order, which stays until pop(). False: empty.
 bool aisle_inbox_peek(const aisle_inbox *self, aisle_inbox_message *out);
 
-// When the next message is a query that the planner cannot take yet: the oldest pose or obstacles that may overtake it,
-// because nothing but queries waits in front of them. False: none.
-bool aisle_inbox_peek_past_queries(const aisle_inbox *self, aisle_inbox_message *out);
+// When the next message must wait: the oldest pose or obstacles that may overtake it, because no goals wait in front of
+// them. A layout or vehicle that takes effect later then plans a mission anew from the newer pose. False: none.
+bool aisle_inbox_peek_overtaking(const aisle_inbox *self, aisle_inbox_message *out);
 
 // Removes a message just peeked at.
 void aisle_inbox_pop(aisle_inbox *self, const aisle_inbox_message *message);

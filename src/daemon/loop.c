@@ -45,26 +45,26 @@ static void note_fault(aisle_loop *self, int16_t cause, int id, aisle_channel ch
         return;
     }
     self->fault_told_us = at;
-    const char *name = self->parts.bus->names[channel];
-    if (fault == NULL || fault->field == NULL) {
-        (void)fprintf(stderr, "aisled: %s: %s (%s)\n", name, what, aisle_cause_name(cause));
-    } else {
-        (void)fprintf(stderr, "aisled: %s: %s %s %" PRId64 " (%s)\n", name, what, fault->field, fault->value,
-                      aisle_cause_name(cause));
+    const char *field = fault == NULL ? "" : fault->field;
+    (void)fprintf(stderr, "aisled: %s: %s%s%s", self->parts.bus->names[channel], what, *field == '\0' ? "" : ": ",
+                  field);
+    if (fault != NULL && fault->value != 0) {
+        (void)fprintf(stderr, " %" PRId64, fault->value);
     }
+    (void)fprintf(stderr, " (%s)\n", aisle_cause_name(cause));
 }
 
 static void note_decode_fault(aisle_loop *self, aisle_channel channel) {
     static const char *const what[] = {
         [AISLE_MSG_FAULT_NONE] = "refused",
-        [AISLE_MSG_FAULT_FINGERPRINT] = "message of another type or version refused",
-        [AISLE_MSG_FAULT_TRUNCATED] = "message refused, it ends within",
-        [AISLE_MSG_FAULT_TRAILING] = "message refused, bytes left over:",
-        [AISLE_MSG_FAULT_NEGATIVE_COUNT] = "message refused, negative count",
-        [AISLE_MSG_FAULT_OVER_BOUND] = "message refused, count over its bound:",
-        [AISLE_MSG_FAULT_OVERSIZE] = "message refused, too long:",
-        [AISLE_MSG_FAULT_NOT_FINITE] = "message refused, not a finite number:",
-        [AISLE_MSG_FAULT_BAD_BOOLEAN] = "message refused, neither true nor false:",
+        [AISLE_MSG_FAULT_FINGERPRINT] = "refused, message of another type or version",
+        [AISLE_MSG_FAULT_TRUNCATED] = "refused, message cut off",
+        [AISLE_MSG_FAULT_TRAILING] = "refused, bytes left over",
+        [AISLE_MSG_FAULT_NEGATIVE_COUNT] = "refused, negative count",
+        [AISLE_MSG_FAULT_OVER_BOUND] = "refused, count over its bound",
+        [AISLE_MSG_FAULT_OVERSIZE] = "refused, too long",
+        [AISLE_MSG_FAULT_NOT_FINITE] = "refused, not a finite number",
+        [AISLE_MSG_FAULT_BAD_BOOLEAN] = "refused, neither true nor false",
     };
     const aisle_msg_fault *fault = &self->feed.fault;
     int16_t cause = aisle_msg_fault_cause(fault);
@@ -81,12 +81,11 @@ static void note_bus_faults(aisle_loop *self) {
     self->bus_faults_seen = bus->fault_count;
     switch (bus->fault) {
     case AISLE_BUS_OVERSIZE:
-        note_fault(self, AISLE_STATUS_LIMIT, AISLE_CAUSE_ID_MESSAGE, bus->fault_channel, "message too long, refused",
-                   NULL);
+        note_fault(self, AISLE_STATUS_LIMIT, AISLE_CAUSE_ID_MESSAGE, bus->fault_channel, "refused, too long", NULL);
         break;
     case AISLE_BUS_FULL:
         note_fault(self, AISLE_STATUS_LIMIT, AISLE_CAUSE_ID_QUEUE, bus->fault_channel,
-                   "message dropped, too many wait for the planner", NULL);
+                   "dropped, too many messages wait for the planner", NULL);
         break;
     case AISLE_BUS_FLOODED:
     default:
@@ -178,6 +177,14 @@ static void send_heartbeat(aisle_loop *self) {
 
 // ---- in
 
+static bool is_layout(aisle_channel channel) {
+    return channel == AISLE_CHANNEL_LAYOUT || channel == AISLE_CHANNEL_LAYOUT_PATCH || channel == AISLE_CHANNEL_GRID;
+}
+
+static int64_t layouts(const aisle_loop *self) {
+    return aisle_planner_counters(self->parts.planner)[AISLE_COUNTER_LAYOUTS];
+}
+
 // Hands one message to the planner; AISLE_BUSY: it stays where it is.
 static aisle_status take(aisle_loop *self, const aisle_inbox_message *message) {
     aisle_inbox *inbox = self->parts.bus->inbox;
@@ -192,29 +199,44 @@ static aisle_status take(aisle_loop *self, const aisle_inbox_message *message) {
     status = aisle_feed_submit(&self->feed, self->parts.planner, aisle_clock_utime(self->parts.clock, now(self)));
     if (status == AISLE_BUSY && self->idle) { // would wait for ever
         self->stuck++;
-        note_fault(self, AISLE_STATUS_INTERNAL, AISLE_CAUSE_ID_PLANNER, message->channel, "message not taken, dropped",
-                   NULL);
+        note_fault(self, AISLE_STATUS_INTERNAL, AISLE_CAUSE_ID_PLANNER, message->channel,
+                   "dropped, the planner does not take it", NULL);
         status = AISLE_ERR_DATA;
     }
     if (status != AISLE_BUSY) {
         aisle_inbox_pop(inbox, message);
         self->progress = true;
     }
-    self->idle = self->idle && status != AISLE_OK;
+    self->idle = self->idle && status < 0;
+    if (status >= 0 && status != AISLE_BUSY && is_layout(message->channel)) {
+        self->settling = true;
+        self->layouts_seen = layouts(self);
+    }
     return status;
 }
 
+// True while a message must wait for the layout that is taking effect: what is planned anew then starts from the pose
+// held.
+static bool waits_for_layout(aisle_loop *self, aisle_channel channel) {
+    self->settling = self->settling && !self->idle && layouts(self) == self->layouts_seen;
+    return self->settling && channel != AISLE_CHANNEL_COMMAND && channel != AISLE_CHANNEL_OBSTACLES;
+}
+
+// A pose or obstacles past a message that must wait.
+static bool feed_overtaking(aisle_loop *self) {
+    aisle_inbox_message message;
+    return !self->settling && aisle_inbox_peek_overtaking(self->parts.bus->inbox, &message) &&
+           take(self, &message) != AISLE_BUSY;
+}
+
+// False: nothing can be taken now.
 static bool feed_one(aisle_loop *self) {
     aisle_inbox_message message;
-    const aisle_inbox *inbox = self->parts.bus->inbox;
-    if (!aisle_inbox_peek(inbox, &message) || (!self->idle && aisle_feed_waits_for_idle(message.channel))) {
+    if (!aisle_inbox_peek(self->parts.bus->inbox, &message)) {
         return false;
     }
-    if (take(self, &message) != AISLE_BUSY) {
-        return true;
-    }
-    return message.channel == AISLE_CHANNEL_QUERY && aisle_inbox_peek_past_queries(inbox, &message) &&
-           take(self, &message) != AISLE_BUSY;
+    bool waits = waits_for_layout(self, message.channel) || (!self->idle && aisle_feed_waits_for_idle(message.channel));
+    return (!waits && take(self, &message) != AISLE_BUSY) || feed_overtaking(self);
 }
 
 static void feed(aisle_loop *self) {

@@ -5,8 +5,10 @@
 // watchdog if something moved. Planning never holds up the bus or the heartbeat by more than one slice.
 //
 // A message the planner cannot take yet stays first in line. Layout, patch, grid and vehicle also wait until the
-// planner is idle (feed.h), so that the answers depend on the order of the messages alone and a log replays to the same
-// bytes.
+// planner is idle (feed.h), and while a layout is taking effect all but commands and obstacles wait. So the answers
+// depend on the order of the messages alone, and a log replays to the same bytes. Exceptions, for the sake of prompt
+// reactions: a goal list or command ends the planning of the goal list before it, which a replay has answered by then;
+// and a mission under way is planned anew for a new layout or vehicle from the newest pose, though it came later.
 //
 // Of a path's bytes the daemon writes one field, planning_time, which the certificate does not cover: the time spent in
 // step() since the answer before it. The renewal of a lease carries the time of the path it renews.
@@ -78,6 +80,8 @@ typedef struct aisle_loop {
     aisle_loop_parts parts;
     aisle_feed feed;
     bool idle;                            // the planner has nothing to do before its deadline
+    bool settling;                        // a layout is taking effect
+    int64_t layouts_seen;                 // AISLE_COUNTER_LAYOUTS when it was taken
     bool progress;                        // something moved since the last watchdog ping
     uint32_t slice;                       // work units of the next slice
     int64_t planning_us;                  // spent in step() since the last answer

@@ -16,6 +16,7 @@ typedef struct request {
 struct aisle_planner {
     request queue[QUEUE_MAX];
     uint32_t waiting;
+    uint32_t building; // work units left of a layout
     int64_t counters[AISLE_COUNTER_COUNT];
     int64_t now, next_lease;
     int32_t path_revision;
@@ -71,6 +72,9 @@ static int32_t id_of(const aisle_input *input) {
 }
 
 aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const aisle_input *input) {
+    if (input->kind == AISLE_INPUT_LAYOUT && self->building > 0) {
+        return AISLE_BUSY;
+    }
     bool is_request = input->kind == AISLE_INPUT_QUERY || input->kind == AISLE_INPUT_GOALS;
     uint32_t most = fake.requests_max == 0 ? 4U : fake.requests_max;
     if (fake.busy_always || (is_request && self->waiting == most)) {
@@ -84,6 +88,9 @@ aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const ais
     fake.taken[fake.num_taken++] = (fake_taken){.kind = input->kind, .id = id_of(input), .now_us = now_us};
     self->now = now_us;
     self->counters[AISLE_COUNTER_INPUTS]++;
+    if (input->kind == AISLE_INPUT_LAYOUT) {
+        self->building = fake.units_per_layout;
+    }
     if (is_request) {
         self->queue[self->waiting++] =
             (request){.kind = input->kind,
@@ -136,6 +143,11 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
         fake.on_step(work_units);
     }
     if (fake.hang) {
+        return AISLE_BUSY;
+    }
+    if (self->building > 0) {
+        self->building -= self->building < work_units ? self->building : work_units;
+        self->counters[AISLE_COUNTER_LAYOUTS] += self->building == 0 ? 1 : 0;
         return AISLE_BUSY;
     }
     if (!self->event_waits && self->waiting > 0) {

@@ -19,6 +19,7 @@ typedef struct fake_taken {
 typedef struct fake_planner {
     // Knobs.
     uint32_t units_per_request; // 0 = 10
+    uint32_t units_per_layout;  // 0 = at once
     uint32_t requests_max;      // waiting requests before BUSY; 0 = 4
     bool give_paths;
     bool refuse_all;                 // submit() answers AISLE_ERR_DATA

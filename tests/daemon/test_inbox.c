@@ -3,6 +3,7 @@
 #include "messages.h"
 #include "unity.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,7 +39,7 @@ static void expect_text(aisle_channel channel, const char *text) {
 static void expect_empty(void) {
     aisle_inbox_message m;
     TEST_ASSERT_FALSE(aisle_inbox_peek(&inbox, &m));
-    TEST_ASSERT_FALSE(aisle_inbox_peek_past_queries(&inbox, &m));
+    TEST_ASSERT_FALSE(aisle_inbox_peek_overtaking(&inbox, &m));
 }
 
 static void test_ordered_messages_come_out_as_they_went_in(void) {
@@ -47,9 +48,9 @@ static void test_ordered_messages_come_out_as_they_went_in(void) {
     put_text(AISLE_CHANNEL_GRID, "three");
     expect_text(AISLE_CHANNEL_LAYOUT, "one");
     expect_text(AISLE_CHANNEL_QUERY, "");
-    put_text(AISLE_CHANNEL_COMMAND, "four");
+    put_text(AISLE_CHANNEL_LAYOUT_PATCH, "four");
     expect_text(AISLE_CHANNEL_GRID, "three");
-    expect_text(AISLE_CHANNEL_COMMAND, "four");
+    expect_text(AISLE_CHANNEL_LAYOUT_PATCH, "four");
     expect_empty();
 }
 static void test_newest_snapshot_replaces_the_older_one(void) {
@@ -124,25 +125,57 @@ static void test_hostile_obstacles_never_touch_the_slot_of_a_real_source(void) {
     aisle_inbox_pop(&inbox, &got);
     expect_empty();
 }
-static void test_pose_and_obstacles_may_overtake_queries_alone(void) {
+static void test_pose_and_obstacles_may_overtake_all_but_goals(void) {
     aisle_inbox_message m;
     put_text(AISLE_CHANNEL_QUERY, "q1");
-    put_text(AISLE_CHANNEL_QUERY, "q2");
-    TEST_ASSERT_FALSE(aisle_inbox_peek_past_queries(&inbox, &m));
+    put_text(AISLE_CHANNEL_LAYOUT, "l1");
+    TEST_ASSERT_FALSE(aisle_inbox_peek_overtaking(&inbox, &m));
     put_text(AISLE_CHANNEL_VEHICLE, "v");
-    TEST_ASSERT_FALSE(aisle_inbox_peek_past_queries(&inbox, &m));
+    TEST_ASSERT_FALSE(aisle_inbox_peek_overtaking(&inbox, &m));
     put_text(AISLE_CHANNEL_POSE, "p");
-    TEST_ASSERT_TRUE(aisle_inbox_peek_past_queries(&inbox, &m));
+    TEST_ASSERT_TRUE(aisle_inbox_peek_overtaking(&inbox, &m));
     TEST_ASSERT_EQUAL(AISLE_CHANNEL_POSE, m.channel);
     aisle_inbox_pop(&inbox, &m);
-    put_text(AISLE_CHANNEL_COMMAND, "c");
+    put_text(AISLE_CHANNEL_GOALS, "g");
     put_text(AISLE_CHANNEL_POSE, "p2");
-    TEST_ASSERT_FALSE(aisle_inbox_peek_past_queries(&inbox, &m));
+    TEST_ASSERT_FALSE(aisle_inbox_peek_overtaking(&inbox, &m));
     expect_text(AISLE_CHANNEL_QUERY, "q1");
-    expect_text(AISLE_CHANNEL_QUERY, "q2");
+    expect_text(AISLE_CHANNEL_LAYOUT, "l1");
     expect_text(AISLE_CHANNEL_VEHICLE, "v");
-    expect_text(AISLE_CHANNEL_COMMAND, "c");
+    expect_text(AISLE_CHANNEL_GOALS, "g");
+    TEST_ASSERT_TRUE(aisle_inbox_peek_overtaking(&inbox, &m));
     expect_text(AISLE_CHANNEL_POSE, "p2");
+    expect_empty();
+}
+static void test_commands_overtake_all_but_the_goals_before_them(void) {
+    put_text(AISLE_CHANNEL_QUERY, "q1");
+    put_text(AISLE_CHANNEL_COMMAND, "c1");
+    put_text(AISLE_CHANNEL_COMMAND, "c2");
+    expect_text(AISLE_CHANNEL_COMMAND, "c1");
+    put_text(AISLE_CHANNEL_GOALS, "g1");
+    put_text(AISLE_CHANNEL_COMMAND, "c3");
+    expect_text(AISLE_CHANNEL_COMMAND, "c2");
+    expect_text(AISLE_CHANNEL_QUERY, "q1");
+    expect_text(AISLE_CHANNEL_GOALS, "g1");
+    put_text(AISLE_CHANNEL_COMMAND, "c4");
+    expect_text(AISLE_CHANNEL_COMMAND, "c3"); // never one command before another
+    expect_text(AISLE_CHANNEL_COMMAND, "c4");
+    expect_empty();
+}
+static void test_many_or_long_commands_go_into_the_ring_and_none_is_lost(void) {
+    char text[AISLE_INBOX_COMMAND_SIZE + 2];
+    for (int i = 0; i < 3 * AISLE_INBOX_COMMANDS; i++) {
+        (void)snprintf(text, sizeof text, "c%d", i);
+        put_text(AISLE_CHANNEL_COMMAND, text);
+    }
+    for (int i = 0; i < 3 * AISLE_INBOX_COMMANDS; i++) {
+        (void)snprintf(text, sizeof text, "c%d", i);
+        expect_text(AISLE_CHANNEL_COMMAND, text);
+    }
+    memset(text, 'x', sizeof text - 1);
+    text[sizeof text - 1] = '\0';
+    put_text(AISLE_CHANNEL_COMMAND, text);
+    expect_text(AISLE_CHANNEL_COMMAND, text);
     expect_empty();
 }
 static void test_full_ring_refuses_counts_and_keeps_what_it_has(void) {
@@ -214,9 +247,9 @@ static void test_invariants_notice_spoilt_bookkeeping(void) {
     inbox.used += 8;
     TEST_ASSERT_FALSE(aisle_inbox_invariants_hold(&inbox));
     inbox.used -= 8;
-    inbox.waiting_queries = 0;
+    inbox.waiting_firm = 1;
     TEST_ASSERT_FALSE(aisle_inbox_invariants_hold(&inbox));
-    inbox.waiting_queries = 1;
+    inbox.waiting_firm = 0;
     ring[inbox.head + 4] = 99; // the channel of the entry
     TEST_ASSERT_FALSE(aisle_inbox_invariants_hold(&inbox));
     ring[inbox.head + 4] = AISLE_CHANNEL_QUERY;
@@ -230,7 +263,9 @@ int main(void) {
     RUN_TEST(test_query_pins_the_vehicle_but_not_the_pose);
     RUN_TEST(test_each_obstacle_source_has_a_slot_of_its_own);
     RUN_TEST(test_hostile_obstacles_never_touch_the_slot_of_a_real_source);
-    RUN_TEST(test_pose_and_obstacles_may_overtake_queries_alone);
+    RUN_TEST(test_pose_and_obstacles_may_overtake_all_but_goals);
+    RUN_TEST(test_commands_overtake_all_but_the_goals_before_them);
+    RUN_TEST(test_many_or_long_commands_go_into_the_ring_and_none_is_lost);
     RUN_TEST(test_full_ring_refuses_counts_and_keeps_what_it_has);
     RUN_TEST(test_snapshot_that_finds_no_place_to_be_pinned_is_counted);
     RUN_TEST(test_sizes_no_message_has_are_refused_unread);
