@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#define SAGITTA_STEP 1e-3 // m, of piece_clearance's subdivision
+#define STRAY_STEP 1e-3     // m, of piece_clearance's subdivision: from straight ways
+#define OVERREACH_STEP 4e-3 // m, and of the hull beyond the sweep of a body that turns
 #define SUBDIVISIONS_MAX 4096U
 
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
@@ -16,8 +17,8 @@ void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
     self->cells = cells;
 }
 
-// Discs of equal radius along the body's x axis that together hold the footprint's box.
-static void cover_with_discs(aisle_space *self) {
+// The lever, and discs of equal radius along the body's x axis that together hold the footprint's box.
+static void measure_body(aisle_space *self) {
     const aisle_vehicle *vehicle = self->vehicle;
     aisle_aabb box = {vehicle->footprint[0], vehicle->footprint[0]};
     for (uint32_t i = 1; i < vehicle->n; i++) {
@@ -25,6 +26,9 @@ static void cover_with_discs(aisle_space *self) {
         box.lo.y = aisle_min(box.lo.y, vehicle->footprint[i].y);
         box.hi.x = aisle_max(box.hi.x, vehicle->footprint[i].x);
         box.hi.y = aisle_max(box.hi.y, vehicle->footprint[i].y);
+    }
+    for (uint32_t i = 0; i < vehicle->n; i++) {
+        self->lever = aisle_max(self->lever, aisle_vec2_length(vehicle->footprint[i]));
     }
     double half = (box.hi.x - box.lo.x) / 8.0; // of one disc's share
     double side = aisle_max(-box.lo.y, box.hi.y);
@@ -34,14 +38,16 @@ static void cover_with_discs(aisle_space *self) {
     self->disc_radius = sqrt(half * half + side * side) + vehicle->radius;
 }
 
-void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle, aisle_space_mode mode) {
+void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
+                       aisle_space_mode mode) {
     self->layout = layout;
     self->grid = aisle_layout_grid(layout);
     self->vehicle = vehicle;
     self->mode = mode;
     self->keep = vehicle->margin + AISLE_SPACE_SLACK;
     self->reach = self->keep + (mode == AISLE_SPACE_FREE_TURN ? vehicle->outer_radius : vehicle->inner_radius);
-    cover_with_discs(self);
+    self->lever = 0.0;
+    measure_body(self);
     uint32_t cells = self->grid->lattice.w * self->grid->lattice.h;
     AISLE_ASSERT(cells <= self->cells);
     memset(self->cell_free, 0, ((size_t)cells / 64U + 1U) * sizeof(uint64_t));
@@ -185,8 +191,8 @@ static double part_clearance(const aisle_space *self, aisle_pose2 from, aisle_po
     return aisle_max(gap - stray, 0.0);
 }
 
-double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
-                                   uint32_t *units) {
+double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
+                                   const aisle_waypoint_msg *to, uint32_t *units) {
     double length = aisle_piece_length(from, to);
     double turn = aisle_piece_turn(from, to);
     aisle_pose2 middle = aisle_piece_at(from, to, 0.5);
@@ -195,8 +201,8 @@ double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint
     if (around - self->vehicle->outer_radius - 0.5 * length >= AISLE_CLEARANCE_CAP) {
         return AISLE_CLEARANCE_CAP;
     }
-    double stray = 0.125 * (fabs((double)to->curvature) * length * length + self->vehicle->outer_radius * turn * turn);
-    double wanted = floor(sqrt(stray / SAGITTA_STEP)) + 1.0;
+    double stray = 0.125 * (fabs((double)to->curvature) * length * length + self->lever * turn * turn);
+    double wanted = floor(aisle_max(sqrt(stray / STRAY_STEP), 0.5 * self->lever * fabs(turn) / OVERREACH_STEP)) + 1.0;
     uint32_t parts = wanted < (double)SUBDIVISIONS_MAX ? (uint32_t)wanted : SUBDIVISIONS_MAX;
     double clearance = AISLE_CLEARANCE_CAP;
     aisle_pose2 begin = {from->x, from->y, from->theta};

@@ -1,11 +1,11 @@
 // space.h - where the vehicle may be: the search's own collision test. Level 4.
 //
-// Two ways to stand for the body. FREE_TURN: the disc about the origin that holds the footprint at every heading; what it
-// sweeps can be driven with any turns. ALONG: the exact footprint with its heading along the motion; used where the disc does not fit.
-// Everything keeps margin + AISLE_SPACE_SLACK from obstacles; the slack is what the verifier needs for its sagittas.
-// Order of tests: bounds from the distance field first, the exact gap only where they leave a doubt (near contours).
-// The verifier shares none of this.
-// Memory: one bit a cell. Time: O(1) from the field; O(obstacles near) for an exact test. Every test adds its work units to *units.
+// Two ways to stand for the body. FREE_TURN: the disc about the origin that holds the footprint at every heading; what
+// it sweeps can be driven with any turns. ALONG: the exact footprint with its heading along the motion; used where the
+// disc does not fit. Everything keeps margin + AISLE_SPACE_SLACK from obstacles; the slack is what the verifier needs
+// for its sagittas. Order of tests: bounds from the distance field first, the exact gap only where they leave a doubt
+// (near contours). The verifier shares none of this. Memory: one bit a cell. Time: O(1) from the field; O(obstacles
+// near) for an exact test. Every test adds its work units to *units.
 #ifndef AISLE_PLAN_SPACE_H
 #define AISLE_PLAN_SPACE_H
 
@@ -13,9 +13,9 @@
 #include "robot/vehicle.h"
 #include "world/layout.h"
 
-#define AISLE_SPACE_SLACK 5e-4    // m
-#define AISLE_SPACE_PIECE 0.5     // m, longest sweep given to one exact test
-#define AISLE_CLEARANCE_CAP 2.0   // m, a larger clearance is told as this
+#define AISLE_SPACE_SLACK 5e-4  // m
+#define AISLE_SPACE_PIECE 0.5   // m, longest sweep given to one exact test
+#define AISLE_CLEARANCE_CAP 2.0 // m, a larger clearance is told as this
 
 typedef enum aisle_space_mode { AISLE_SPACE_FREE_TURN, AISLE_SPACE_ALONG } aisle_space_mode;
 
@@ -28,6 +28,7 @@ typedef struct aisle_space {
     double reach;        // FREE_TURN: outer radius + keep; ALONG: inner radius + keep (necessary, not sufficient)
     uint64_t *cell_free; // [cells / 64 + 1] bits: the exact test of this centre said free
     uint32_t cells;
+    double lever; // m, farthest footprint point from the origin, its rounding left out
     // ALONG: discs on the body's x axis that hold the footprint, for a quick yes
     double disc_x[4], disc_radius;
 } aisle_space;
@@ -35,10 +36,11 @@ typedef struct aisle_space {
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells);
 
 // Turns to a layout in force and a vehicle. O(cells / 64).
-void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle, aisle_space_mode mode);
+void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
+                       aisle_space_mode mode);
 
-// FREE_TURN: may the disc stand in the cell's centre so that every step to a neighbour that also may is free? (Both ends at least
-// sqrt(reach^2 + res^2 / 2) from a point keep the segment at least reach from it.) Remembered.
+// FREE_TURN: may the disc stand in the cell's centre so that every step to a neighbour that also may is free? (Both
+// ends at least sqrt(reach^2 + res^2 / 2) from a point keep the segment at least reach from it.) Remembered.
 bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units);
 
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.
@@ -47,11 +49,14 @@ bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b,
 // Gap between the footprint at pose and the nearest obstacle (exact), at most cap; *id that obstacle.
 double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, int32_t *id);
 
-// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius. Smooth and cheap; for costs only.
+// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius. Smooth and
+// cheap; for costs only.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
-// Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at most 1 mm
-// (plus rounding) below the truth.
-double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
-                                   uint32_t *units);
+// Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at
+// most 2 mm below the truth for discs and straight pieces, 6 mm where a polygon turns (the hull of two placements
+// reaches beyond the sweep by up to half the turn times the lever, so turning pieces are cut finer). O(turn * obstacles
+// near).
+double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
+                                   const aisle_waypoint_msg *to, uint32_t *units);
 #endif

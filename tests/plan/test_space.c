@@ -1,0 +1,194 @@
+#include "plan/space.h"
+
+#include "hall.h"
+
+#include "base/rng.h"
+#include "robot/curve.h"
+
+enum { SEEDS = 16 };
+
+static aisle_space space;
+static uint32_t units;
+
+static double uniform(aisle_rng *rng, double lo, double hi) {
+    return lo + (hi - lo) * (double)aisle_rng_float(rng);
+}
+
+static void random_hall(aisle_rng *rng) {
+    hall_begin(12.0, 9.0);
+    for (int i = 0; i < 8; i++) {
+        double x = uniform(rng, 0.5, 10.0);
+        double y = uniform(rng, 0.5, 7.5);
+        hall_add(x, y, x + uniform(rng, 0.2, 2.0), y + uniform(rng, 0.2, 1.5));
+    }
+}
+
+static void open_space(aisle_space_mode mode) {
+    aisle_arena arena = hall_arena(24U << 20);
+    memset(&space, 0, sizeof space);
+    aisle_space_carve(&space, &arena, hall_limits.cells);
+    hall_open(&arena, 0.05F);
+    aisle_space_begin(&space, &hall_layout, &hall_vehicle, mode);
+    units = 0;
+}
+
+void setUp(void) {
+    hall_disc(0.3, 0.1F);
+}
+void tearDown(void) {}
+
+// Least gap of the vehicle along a straight way, heading along it, sampled every 5 mm.
+static double sampled_sweep_gap(aisle_vec2 a, aisle_vec2 b) {
+    double theta = atan2(b.y - a.y, b.x - a.x);
+    int steps = 1 + (int)(aisle_vec2_distance(a, b) / 0.005);
+    double least = 1e9;
+    for (int i = 0; i <= steps; i++) {
+        aisle_vec2 p = aisle_vec2_lerp(a, b, (double)i / steps);
+        least = fmin(least, hall_body_gap((aisle_pose2){p.x, p.y, theta}));
+    }
+    return least;
+}
+
+static void test_a_cell_is_free_just_where_the_disc_has_its_margin_and_the_steps_slack(void) {
+    int free_cells = 0;
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        random_hall(&rng);
+        open_space(AISLE_SPACE_FREE_TURN);
+        const aisle_lattice *lattice = &space.grid->lattice;
+        double need = sqrt(space.reach * space.reach + 0.5 * lattice->res * lattice->res);
+        for (uint32_t cell = 0; cell < lattice->w * lattice->h; cell++) {
+            aisle_vec2 c = aisle_lattice_centre(lattice, cell);
+            double gap = (double)hall_disc_gap(c.x, c.y, 0.0);
+            bool free = aisle_space_cell_free(&space, cell, &units);
+            TEST_ASSERT_EQUAL(free, aisle_space_cell_free(&space, cell, &units)); // remembered
+            TEST_ASSERT_FALSE(free && gap < need - 1e-9);
+            TEST_ASSERT_FALSE(!free && gap > need + 1e-9);
+            free_cells += free;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(6 * 5000, free_cells);
+}
+
+static void sweeps_agree_with_dense_sampling(aisle_space_mode mode, int least_free) {
+    int free_ways = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        random_hall(&rng);
+        open_space(mode);
+        for (int k = 0; k < 25; k++) {
+            aisle_vec2 a = {uniform(&rng, 0.0, 12.0), uniform(&rng, 0.0, 9.0)};
+            aisle_vec2 b = {a.x + uniform(&rng, -2.0, 2.0), a.y + uniform(&rng, -2.0, 2.0)};
+            bool free = aisle_space_sweep_free(&space, a, b, &units);
+            double gap = sampled_sweep_gap(a, b);
+            TEST_ASSERT_FALSE(free && gap < hall_vehicle.margin + AISLE_SPACE_SLACK - 1e-6);
+            TEST_ASSERT_FALSE(!free && gap > hall_vehicle.margin + AISLE_SPACE_SLACK + 2e-3);
+            free_ways += free;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(least_free, free_ways);
+}
+
+static void test_a_disc_sweep_is_free_just_where_dense_samples_keep_the_margin(void) {
+    sweeps_agree_with_dense_sampling(AISLE_SPACE_FREE_TURN, 60);
+}
+
+static void test_a_body_sweep_is_free_just_where_dense_samples_keep_the_margin(void) {
+    hall_rectangle(1.2, 0.5, 0.05F);
+    sweeps_agree_with_dense_sampling(AISLE_SPACE_ALONG, 60);
+}
+
+static void test_free_turn_stands_for_every_heading(void) {
+    hall_rectangle(1.2, 0.5, 0.05F);
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        random_hall(&rng);
+        open_space(AISLE_SPACE_FREE_TURN);
+        for (int k = 0; k < 20; k++) {
+            aisle_vec2 p = {uniform(&rng, 0.0, 12.0), uniform(&rng, 0.0, 9.0)};
+            if (!aisle_space_sweep_free(&space, p, p, &units)) {
+                continue;
+            }
+            for (int h = 0; h < 36; h++) {
+                TEST_ASSERT_TRUE(hall_body_gap((aisle_pose2){p.x, p.y, 0.1745 * h}) >=
+                                 (long double)hall_vehicle.margin);
+            }
+        }
+    }
+}
+
+static void test_a_wall_thinner_than_a_cell_stops_a_point_sized_robot(void) {
+    hall_begin(4.0, 4.0);
+    hall_add(2.0, 0.0, 2.001, 4.0);
+    hall_disc(0.001, -1.0F);
+    open_space(AISLE_SPACE_FREE_TURN);
+    TEST_ASSERT_FALSE(aisle_space_sweep_free(&space, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(3.0, 1.3), &units));
+    TEST_ASSERT_TRUE(aisle_space_sweep_free(&space, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(1.99, 3.0), &units));
+}
+
+static void test_every_test_adds_its_units(void) {
+    hall_begin(4.0, 4.0);
+    open_space(AISLE_SPACE_FREE_TURN);
+    TEST_ASSERT_TRUE(aisle_space_sweep_free(&space, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(3.0, 3.0), &units));
+    TEST_ASSERT_GREATER_THAN_UINT32(0, units);
+}
+
+// Sampled least gap over a piece of motion.
+static double sampled_piece_gap(const aisle_waypoint_msg *a, const aisle_waypoint_msg *b) {
+    double least = 1e9;
+    for (int i = 0; i <= 250; i++) {
+        least = fmin(least, hall_body_gap(aisle_piece_at(a, b, i / 250.0)));
+    }
+    return fmax(least, 0.0);
+}
+
+static void test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_every_seed(void) {
+    hall_rectangle(0.9, 0.5, 0.05F);
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        random_hall(&rng);
+        open_space(AISLE_SPACE_FREE_TURN);
+        for (int k = 0; k < 8; k++) {
+            double theta = uniform(&rng, -3.0, 3.0);
+            double curvature = k % 2 == 0 ? 0.0 : uniform(&rng, -1.5, 1.5);
+            double length = uniform(&rng, 0.01, 1.0);
+            aisle_waypoint_msg a = {.x = uniform(&rng, 0.5, 11.5), .y = uniform(&rng, 0.5, 8.5), .theta = theta};
+            double half = 0.5 * curvature * length;
+            double chord = fabs(half) > 1e-9 ? length * sin(half) / half : length;
+            aisle_waypoint_msg b = {.x = a.x + chord * cos(theta + half),
+                                    .y = a.y + chord * sin(theta + half),
+                                    .theta = remainder(theta + 2.0 * half, 2.0 * acos(-1.0)),
+                                    .curvature = (float)curvature};
+            double told = aisle_space_piece_clearance(&space, &a, &b, &units);
+            double truth = fmin(sampled_piece_gap(&a, &b), AISLE_CLEARANCE_CAP);
+            TEST_ASSERT_TRUE(told <= truth + 1e-6);
+            TEST_ASSERT_TRUE(told >= truth - (k % 2 == 0 ? 2e-3 : 6e-3));
+        }
+    }
+}
+
+static void test_clearance_about_follows_the_field_within_a_cell(void) {
+    aisle_rng rng = aisle_rng_seed(7);
+    random_hall(&rng);
+    open_space(AISLE_SPACE_FREE_TURN);
+    for (int k = 0; k < 2000; k++) {
+        aisle_vec2 p = {uniform(&rng, 0.3, 11.7), uniform(&rng, 0.3, 8.7)};
+        double truth = (double)hall_disc_gap(p.x, p.y, hall_vehicle.inner_radius);
+        if (truth > 0.0) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.06, truth, aisle_space_clearance_about(&space, p));
+        }
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_a_cell_is_free_just_where_the_disc_has_its_margin_and_the_steps_slack);
+    RUN_TEST(test_a_disc_sweep_is_free_just_where_dense_samples_keep_the_margin);
+    RUN_TEST(test_a_body_sweep_is_free_just_where_dense_samples_keep_the_margin);
+    RUN_TEST(test_free_turn_stands_for_every_heading);
+    RUN_TEST(test_a_wall_thinner_than_a_cell_stops_a_point_sized_robot);
+    RUN_TEST(test_every_test_adds_its_units);
+    RUN_TEST(test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_every_seed);
+    RUN_TEST(test_clearance_about_follows_the_field_within_a_cell);
+    return UNITY_END();
+}
