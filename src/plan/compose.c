@@ -17,12 +17,15 @@ void aisle_compose_carve(aisle_compose *self, aisle_arena *arena) {
     self->sample = (aisle_spline_sample *)aisle_arena_take(arena, AISLE_SWARM_SAMPLES_MAX, sizeof(aisle_spline_sample));
 }
 
-bool aisle_goal_heading_is_free(const aisle_goal_msg *goal) { return (double)goal->tolerance_theta >= 3.14159; }
+bool aisle_goal_heading_is_free(const aisle_goal_msg *goal) {
+    return (double)goal->tolerance_theta >= 3.14159;
+}
 
 static bool arc_free(void *ctx, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
     aisle_compose *self = (aisle_compose *)ctx;
     const aisle_space *space = self->request.space;
-    return aisle_space_piece_clearance(space, from, to, &self->units) >= space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
+    return aisle_space_piece_clearance(space, from, to, &self->units) >=
+           space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
 }
 
 static aisle_corner_rule corner_rule(aisle_compose *self) {
@@ -103,7 +106,9 @@ static double first_heading(aisle_compose *self) {
     return aisle_atan2(p[1].y - p[0].y, p[1].x - p[0].x);
 }
 
-static bool is_turn(const aisle_waypoint_msg *from) { return (from->flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0; }
+static bool is_turn(const aisle_waypoint_msg *from) {
+    return (from->flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
+}
 
 // Cuts long pieces of raw into the path's waypoints. False: too many.
 static bool cut_pieces(aisle_compose *self, double longest) {
@@ -160,8 +165,8 @@ aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_reques
 static bool may_join(const aisle_compose *self, const aisle_waypoint_msg *a, const aisle_waypoint_msg *b,
                      const aisle_waypoint_msg *c) {
     double creep = self->request.space->vehicle->creep_clearance;
-    bool straight = fabs((double)b->curvature) + fabs((double)c->curvature) <= 0.0 && fabs(b->theta - c->theta) < 1e-12 &&
-                    fabs(a->theta - b->theta) < 1e-9;
+    bool straight = fabs((double)b->curvature) + fabs((double)c->curvature) <= 0.0 &&
+                    fabs(b->theta - c->theta) < 1e-12 && fabs(a->theta - b->theta) < 1e-9;
     bool same_class = ((double)b->clearance < creep) == ((double)c->clearance < creep);
     double longest = (double)b->clearance < creep ? 0.5 * AISLE_COMPOSE_JOIN : AISLE_COMPOSE_JOIN;
     return straight && same_class && b->flags == 0 && !is_turn(a) && aisle_piece_length(a, c) <= longest;
@@ -200,7 +205,8 @@ static void value_legs(aisle_compose *self) {
     for (uint32_t i = 0; i < (uint32_t)path->num_waypoints; i++) {
         const aisle_waypoint_msg *to = &path->waypoints[i];
         double length = i > 0U ? aisle_piece_length(to - 1, to) : 0.0;
-        value += length * aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
+        value +=
+            length * aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
         if ((to->flags & AISLE_WAYPOINT_GOAL) != 0 && leg < self->request.leg_count) {
             aisle_leg *at = &self->request.legs[leg++];
             *(at->use_swarm ? &at->swarm_value : &at->seed_value) = value;

@@ -1,10 +1,10 @@
 // compose.h - from planned legs to a complete path_t: pieces, clearances, speeds, sums. Level 4.
 //
-// Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines with arcs);
-// a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are cut to AISLE_COMPOSE_PIECE (more
-// on long paths, so that the waypoints suffice) so that clearance, creep speed and zones follow the place; straight neighbours of the same
-// speed class are joined again. Clearance: space.h's lower bound. Speeds: profile.h.
-// Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
+// Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines
+// with arcs); a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are cut to
+// AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and zones
+// follow the place; straight neighbours of the same speed class are joined again. Clearance: space.h's lower bound.
+// Speeds: profile.h. Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
 #ifndef AISLE_PLAN_COMPOSE_H
 #define AISLE_PLAN_COMPOSE_H
 
@@ -13,9 +13,9 @@
 #include "plan/space.h"
 #include "robot/curve.h"
 
-#define AISLE_COMPOSE_PIECE 0.5      // m
-#define AISLE_COMPOSE_PIECES 400U    // a path is cut into about so many pieces at most
-#define AISLE_COMPOSE_JOIN 2.0       // m, longest joined piece
+#define AISLE_COMPOSE_PIECE 0.5   // m
+#define AISLE_COMPOSE_PIECES 400U // a path is cut into about so many pieces at most
+#define AISLE_COMPOSE_JOIN 2.0    // m, longest joined piece
 
 typedef struct aisle_compose_request {
     const aisle_space *space;

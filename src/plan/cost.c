@@ -1,6 +1,7 @@
 #include "plan/cost.h"
 
-double aisle_leg_cost(const aisle_space *space, const aisle_objective *objective, aisle_vec2 a, aisle_vec2 b, uint32_t *units) {
+double aisle_leg_cost(const aisle_space *space, const aisle_objective *objective, aisle_vec2 a, aisle_vec2 b,
+                      uint32_t *units) {
     double length = aisle_vec2_distance(a, b);
     if (aisle_objective_is_length(objective)) {
         return length;

@@ -59,4 +59,6 @@ double aisle_objective_density(const aisle_objective *self, double clearance, do
     return aisle_clamp(density, 1.0, AISLE_OBJECTIVE_DENSITY_MAX);
 }
 
-bool aisle_objective_is_length(const aisle_objective *self) { return self->kind == AISLE_OPTIONS_SHORTEST; }
+bool aisle_objective_is_length(const aisle_objective *self) {
+    return self->kind == AISLE_OPTIONS_SHORTEST;
+}

@@ -1,15 +1,15 @@
 // objective.h - what a metre of path costs, by its clearance and curvature. Level 4.
 //
-// Every objective is an integral of a density over the length, so the grid search, the taut string, the swarm and the final
-// comparison all mean the same thing by "better":
+// Every objective is an integral of a density over the length, so the grid search, the taut string, the swarm and the
+// final comparison all mean the same thing by "better":
 //     SHORTEST      1
 //     SAFEST        1 + risk_weight * max(1 - clearance / creep_clearance, 0)
 //     FASTEST       v_max / v,        v = the speed limit there (v_max, creep_speed, lateral acceleration, turn rate)
 //     LEAST_ENERGY  (m g c / eff + idle_power / v) / (m g c / eff + idle_power / v_max)
-// Densities are at least 1 (an integer grid can use them) and at most AISLE_OBJECTIVE_DENSITY_MAX. Keeping the margin is never part
-// of it: a path that does not is not compared at all (feasibility first).
-// SAFEST's risk_weight 0 means AISLE_OBJECTIVE_RISK_WEIGHT: a metre at the margin may be avoided by a detour of so many metres
-// with full clearance. Ours: PAPERS 1 multiplies length by (1 + beta OA), the same integral with circles for shapes.
+// Densities are at least 1 (an integer grid can use them) and at most AISLE_OBJECTIVE_DENSITY_MAX. Keeping the margin
+// is never part of it: a path that does not is not compared at all (feasibility first). SAFEST's risk_weight 0 means
+// AISLE_OBJECTIVE_RISK_WEIGHT: a metre at the margin may be avoided by a detour of so many metres with full clearance.
+// Ours: PAPERS 1 multiplies length by (1 + beta OA), the same integral with circles for shapes.
 #ifndef AISLE_PLAN_OBJECTIVE_H
 #define AISLE_PLAN_OBJECTIVE_H
 

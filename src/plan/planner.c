@@ -29,8 +29,8 @@ static void row(aisle_planner *self, const aisle_arena *arena, size_t *from, con
     *from = arena->used;
 }
 
-// One walk for measuring and carving. The planner and the structs with carve functions of their own come first, so that in a
-// measuring walk stand-ins on the caller's side take the pointers.
+// One walk for measuring and carving. The planner and the structs with carve functions of their own come first, so that
+// in a measuring walk stand-ins on the caller's side take the pointers.
 typedef struct stand_ins {
     aisle_planner planner;
     aisle_layout layout;
@@ -197,7 +197,8 @@ static void end_route(aisle_planner *self) {
     if (answer == NULL) {
         self->mission.cause = route->request.is_query ? self->mission.cause : route->cause.cause;
         self->mission.cause_id = route->request.is_query ? self->mission.cause_id : route->cause.id;
-        aisle_planner_refuse(self, &route->request, &route->cause, route->has_place ? &route->place : NULL, route->spent);
+        aisle_planner_refuse(self, &route->request, &route->cause, route->has_place ? &route->place : NULL,
+                             route->spent);
     } else if (route->request.is_query || answer != &route->first || !route->announced) {
         aisle_planner_publish(self, &route->request, answer);
     }
@@ -258,7 +259,9 @@ static void renew_lease(aisle_planner *self) {
 
 // ---- public
 
-static bool events_wait(const aisle_planner *self) { return self->out[0].waiting || self->out[1].waiting; }
+static bool events_wait(const aisle_planner *self) {
+    return self->out[0].waiting || self->out[1].waiting;
+}
 
 aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t work_units) {
     if (now_us > self->now_us) {
@@ -299,7 +302,9 @@ int64_t aisle_planner_next_deadline(const aisle_planner *self) {
     return leased ? self->lease_due_us : INT64_MAX;
 }
 
-const int64_t *aisle_planner_counters(const aisle_planner *self) { return self->counters; }
+const int64_t *aisle_planner_counters(const aisle_planner *self) {
+    return self->counters;
+}
 
 // ---- status
 

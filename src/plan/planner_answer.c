@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-static void queue(aisle_planner *self, aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp) {
+static void queue(aisle_planner *self, aisle_event_kind kind, const uint8_t *bytes, size_t size,
+                  const aisle_stamp *stamp) {
     self->out[kind] = (aisle_outgoing){.bytes = bytes, .size = size, .stamp = stamp, .waiting = true};
 }
 

@@ -5,7 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-bool aisle_planner_is_busy(const aisle_planner *self) { return self->planning || self->building || self->queue_count > 0; }
+bool aisle_planner_is_busy(const aisle_planner *self) {
+    return self->planning || self->building || self->queue_count > 0;
+}
 
 bool aisle_planner_pose_is_fresh(const aisle_planner *self) {
     double timeout = self->has_vehicle ? self->vehicle.pose_timeout : 0.2;
@@ -159,7 +161,9 @@ static void order_goals(aisle_request *request) {
     }
 }
 
-static bool count_is_bad(int16_t num_goals) { return num_goals < 0 || num_goals > AISLE_GOAL_LIST_MAX_GOALS; }
+static bool count_is_bad(int16_t num_goals) {
+    return num_goals < 0 || num_goals > AISLE_GOAL_LIST_MAX_GOALS;
+}
 
 static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) {
     if (count_is_bad(msg->num_goals)) {

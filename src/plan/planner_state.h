@@ -1,6 +1,7 @@
 // planner_state.h - what lies behind planner.h; for planner*.c alone. Level 4.
 //
-// planner.c: memory, step, events, status. planner_inputs.c: what each message does. planner_answer.c: paths and reasons out.
+// planner.c: memory, step, events, status. planner_inputs.c: what each message does. planner_answer.c: paths and
+// reasons out.
 #ifndef AISLE_PLAN_PLANNER_STATE_H
 #define AISLE_PLAN_PLANNER_STATE_H
 
@@ -48,8 +49,8 @@ struct aisle_planner {
     bool planning;
     aisle_mission mission;
     int32_t path_revision;
-    aisle_path_msg *head; // of answers; waypoints unused but the one of a refusal
-    uint8_t *refusal[2];  // [AISLE_REFUSAL_BYTES] for PATH and REPLY
+    aisle_path_msg *head;  // of answers; waypoints unused but the one of a refusal
+    uint8_t *refusal[2];   // [AISLE_REFUSAL_BYTES] for PATH and REPLY
     aisle_outgoing out[2]; // by aisle_event_kind
     int64_t lease_due_us;
     int16_t cause; // last refused input

@@ -20,7 +20,9 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
     self->better.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
 }
 
-static aisle_vec2 place_of(const aisle_goal_msg *goal) { return aisle_vec2_of(goal->x, goal->y); }
+static aisle_vec2 place_of(const aisle_goal_msg *goal) {
+    return aisle_vec2_of(goal->x, goal->y);
+}
 
 static const aisle_goal_msg *leg_start(const aisle_route *self, uint32_t leg) {
     return leg == 0U ? &self->request.start : &self->request.goals[leg - 1U];
@@ -159,7 +161,8 @@ static void begin_why(aisle_route *self) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
-// Starts the seed of the leg under way; false: the body's way of standing (mode) finds no start, and the next was tried.
+// Starts the seed of the leg under way; false: the body's way of standing (mode) finds no start, and the next was
+// tried.
 static bool begin_leg(aisle_route *self, aisle_space_mode mode) {
     aisle_leg *leg = &self->legs[self->leg];
     leg->first = self->point_count;
@@ -178,7 +181,8 @@ static bool begin_leg(aisle_route *self, aisle_space_mode mode) {
         return true;
     }
     aisle_space_begin(&self->space, self->layout, self->vehicle, mode);
-    if (aisle_seed_start(&self->seed, &self->space, &self->objective, from, to, self->points + leg->first) == AISLE_OK) {
+    if (aisle_seed_start(&self->seed, &self->space, &self->objective, from, to, self->points + leg->first) ==
+        AISLE_OK) {
         return true;
     }
     if (mode == AISLE_SPACE_FREE_TURN && !aisle_vehicle_is_disc(self->vehicle)) {
@@ -532,7 +536,8 @@ aisle_status aisle_route_step(aisle_route *self, uint32_t units) {
             st = self->first.ready ? AISLE_OK : refuse(self, AISLE_STATUS_BUDGET, 0, (double)self->budget);
             break;
         }
-        uint32_t left = self->budget - self->spent < until - self->spent ? self->budget - self->spent : until - self->spent;
+        uint32_t left =
+            self->budget - self->spent < until - self->spent ? self->budget - self->spent : until - self->spent;
         st = step_stage(self, left);
     }
     return st;

@@ -1,14 +1,14 @@
 // route.h - one request from start to proved path or reason: the AUTO pipeline. Level 4.
 //
-// Stages: CHECK start and goals exactly - per leg SEED (grid search, turning disc first, the exact body along the motion
-// if that finds nothing) and TAUT - BUILD and VERIFY the seed path - per leg SWARM - BUILD and VERIFY the better legs - END.
-// WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm begins; the final one is never
-// worse by the objective's own measure, else the seed's path stays.
-// Planner by name: AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
-// Budget: work units of everything together; spent before a first proof: cause BUDGET; spent later: the first path is the answer.
-// If the verifier turns the seed path down it is built again with stops in all corners; if that fails too, the cause is
-// KINEMATIC (a way for the body exists, the turns it needs were not proved) or VERIFY_FAILED.
-// Memory: from the arena, about 0.6 MiB and the searches' cells. Time: at most the budget plus one indivisible piece of each stage.
+// Stages: CHECK start and goals exactly - per leg SEED (grid search, turning disc first, the exact body along the
+// motion if that finds nothing) and TAUT - BUILD and VERIFY the seed path - per leg SWARM - BUILD and VERIFY the better
+// legs - END. WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm
+// begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
+// AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
+// Budget: work units of everything together; spent before a first proof: cause BUDGET; spent later: the first path is
+// the answer. If the verifier turns the seed path down it is built again with stops in all corners; if that fails too,
+// the cause is KINEMATIC (a way for the body exists, the turns it needs were not proved) or VERIFY_FAILED. Memory: from
+// the arena, about 0.6 MiB and the searches' cells. Time: at most the budget plus one indivisible piece of each stage.
 #ifndef AISLE_PLAN_ROUTE_H
 #define AISLE_PLAN_ROUTE_H
 
@@ -68,22 +68,22 @@ typedef struct aisle_route {
     aisle_why why;
     aisle_vec2 *points; // [AISLE_ROUTE_POINTS]
     uint32_t point_count;
-    aisle_leg *legs; // [AISLE_GOAL_LIST_MAX_GOALS]
-    uint32_t leg;    // under way
-    aisle_path_msg *path;    // being composed
-    aisle_path_msg *decoded; // the verifier's
+    aisle_leg *legs;           // [AISLE_GOAL_LIST_MAX_GOALS]
+    uint32_t leg;              // under way
+    aisle_path_msg *path;      // being composed
+    aisle_path_msg *decoded;   // the verifier's
     aisle_proof first, better; // the answer is better if ready, else first if ready
     aisle_proof *trial;        // where the path being verified goes
     aisle_route_stage stage;
-    bool stops;       // build with a stop in every corner
-    bool swarm_done;  // the legs' swarms have run
-    bool announced;   // AISLE_PARTIAL was told
+    bool stops;                          // build with a stop in every corner
+    bool swarm_done;                     // the legs' swarms have run
+    bool announced;                      // AISLE_PARTIAL was told
     uint32_t spent, budget, proof_units; // work units; what the first build and proof took
     uint32_t budget_default;
     int64_t swarm_evals, nodes, verify_failed, intervals; // counters of this request
     aisle_collide_count collide;
-    aisle_refusal cause;  // with no path
-    aisle_vec2 place;     // where the cause is, if has_place
+    aisle_refusal cause; // with no path
+    aisle_vec2 place;    // where the cause is, if has_place
     bool has_place;
 } aisle_route;
 
@@ -94,8 +94,8 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
 void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        const aisle_request *request, const aisle_path_msg *head);
 
-// Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: `first` has just become ready, a better one may follow (told once); AISLE_OK: ended:
-// aisle_route_answer() or cause.
+// Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: `first` has just become ready, a better one may follow (told once);
+// AISLE_OK: ended: aisle_route_answer() or cause.
 aisle_status aisle_route_step(aisle_route *self, uint32_t units);
 
 // The proved path, NULL if there is none.

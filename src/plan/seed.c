@@ -12,7 +12,8 @@ void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *
 }
 
 static uint16_t factor_at(const aisle_seed *self, uint32_t field) {
-    double clearance = (sqrt((double)field) - 0.5) * self->space->grid->lattice.res - self->space->vehicle->inner_radius;
+    double clearance =
+        (sqrt((double)field) - 0.5) * self->space->grid->lattice.res - self->space->vehicle->inner_radius;
     double density = aisle_objective_density(self->objective, clearance, 0.0);
     return (uint16_t)(density * (double)AISLE_ASTAR_FACTOR_ONE + 0.5);
 }
@@ -104,8 +105,7 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
     self->units = 0;
     self->by_width = false;
     tabulate(self);
-    aisle_astar_config cfg =
-        search_config(self, space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along);
+    aisle_astar_config cfg = search_config(self, space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along);
     if (!join(self, start, true, &cfg.start) || !join(self, goal, false, &cfg.goal)) {
         self->phase = AISLE_SEED_IDLE;
         return AISLE_PARTIAL;
@@ -234,8 +234,8 @@ void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 sta
     self->by_width = true;
     self->units = 0;
     self->phase = AISLE_SEED_SEARCH;
-    // The best point of a cell is at most half a diagonal from its centre, the obstacle at most half a diagonal nearer than the
-    // centre of its cell: open if sqrt(field) >= reach / res - sqrt(2).
+    // The best point of a cell is at most half a diagonal from its centre, the obstacle at most half a diagonal nearer
+    // than the centre of its cell: open if sqrt(field) >= reach / res - sqrt(2).
     double cells = reach / space->grid->lattice.res - 1.41421356237309505;
     self->open_from = cells > 0.0 ? (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX) : 0U;
     aisle_astar_config cfg = search_config(self, enter_width);

@@ -1,14 +1,14 @@
 // seed.h - connectivity: a grid search for one leg and its path as a short polyline. Level 4.
 //
-// Search: A* over the planning grid (algo/astar.h), the cost of a cell being the objective's density at its clearance, so that the
-// homotopy class already suits the objective. FREE_TURN bars cells where the turning disc does not fit (exactly, where the
-// field leaves a doubt); ALONG bars moves the footprint cannot make with its heading along them.
-// Ends: start and goal are joined to the nearest free cell centre within AISLE_SEED_JOIN cells that a straight free way leads to.
-// Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping, then halving) at no
-// higher cost than the cells' own way.
-// WIDTH mode answers a different question for refusals: is there a way for a smaller disc? Optimistic: a cell is open if
-// some point of it may be `width_reach` or more from every obstacle; if that fails to connect, no way of that width exists: a proof.
-// Memory: search 2 bytes a cell, path 4 bytes * AISLE_SEED_CELLS_MAX, table. Time: O(cells expanded), sliced.
+// Search: A* over the planning grid (algo/astar.h), the cost of a cell being the objective's density at its clearance,
+// so that the homotopy class already suits the objective. FREE_TURN bars cells where the turning disc does not fit
+// (exactly, where the field leaves a doubt); ALONG bars moves the footprint cannot make with its heading along them.
+// Ends: start and goal are joined to the nearest free cell centre within AISLE_SEED_JOIN cells that a straight free way
+// leads to. Straightening: from each kept point the farthest cell along the path that a free straight way reaches
+// (galloping, then halving) at no higher cost than the cells' own way. WIDTH mode answers a different question for
+// refusals: is there a way for a smaller disc? Optimistic: a cell is open if some point of it may be `width_reach` or
+// more from every obstacle; if that fails to connect, no way of that width exists: a proof. Memory: search 2 bytes a
+// cell, path 4 bytes * AISLE_SEED_CELLS_MAX, table. Time: O(cells expanded), sliced.
 #ifndef AISLE_PLAN_SEED_H
 #define AISLE_PLAN_SEED_H
 
@@ -16,12 +16,17 @@
 #include "plan/objective.h"
 #include "plan/space.h"
 
-#define AISLE_SEED_CELLS_MAX 65536U  // cells of a path
-#define AISLE_SEED_POINTS_MAX 256U   // points of a leg's polyline
-#define AISLE_SEED_JOIN 4            // cells
-#define AISLE_SEED_TABLE 16384U      // field values with a tabulated factor
+#define AISLE_SEED_CELLS_MAX 65536U // cells of a path
+#define AISLE_SEED_POINTS_MAX 256U  // points of a leg's polyline
+#define AISLE_SEED_JOIN 4           // cells
+#define AISLE_SEED_TABLE 16384U     // field values with a tabulated factor
 
-typedef enum aisle_seed_phase { AISLE_SEED_IDLE, AISLE_SEED_SEARCH, AISLE_SEED_STRAIGHTEN, AISLE_SEED_DONE } aisle_seed_phase;
+typedef enum aisle_seed_phase {
+    AISLE_SEED_IDLE,
+    AISLE_SEED_SEARCH,
+    AISLE_SEED_STRAIGHTEN,
+    AISLE_SEED_DONE
+} aisle_seed_phase;
 
 typedef struct aisle_seed {
     aisle_space *space;
@@ -33,7 +38,7 @@ typedef struct aisle_seed {
     uint16_t *factor;   // [AISLE_SEED_TABLE] by field value
     uint32_t open_from; // WIDTH: least field value of an open cell
     bool by_width;
-    uint32_t units;     // spent inside callbacks since the last step
+    uint32_t units; // spent inside callbacks since the last step
     aisle_seed_phase phase;
     aisle_vec2 *points; // the polyline under way; the caller's [AISLE_SEED_POINTS_MAX]
     uint32_t point_count;
@@ -41,15 +46,18 @@ typedef struct aisle_seed {
 
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits);
 
-// Begins the search of a leg. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined (nothing begun).
+// Begins the search of a leg. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined (nothing
+// begun).
 aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, aisle_vec2 start,
                               aisle_vec2 goal, aisle_vec2 *points);
 
-// AISLE_BUSY; AISLE_OK: points[0..point_count) lead from start to goal; AISLE_PARTIAL: the grid has no way; AISLE_ERR_CAPACITY: the open
-// list, the path or the polyline is full. Spends about `units`, adds what it spent to *spent.
+// AISLE_BUSY; AISLE_OK: points[0..point_count) lead from start to goal; AISLE_PARTIAL: the grid has no way;
+// AISLE_ERR_CAPACITY: the open list, the path or the polyline is full. Spends about `units`, adds what it spent to
+// *spent.
 aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent);
 
-// WIDTH: whether cells whose best point keeps `reach` join start and goal; only aisle_astar_* results follow, no polyline.
+// WIDTH: whether cells whose best point keeps `reach` join start and goal; only aisle_astar_* results follow, no
+// polyline.
 void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach);
 aisle_status aisle_seed_step_width(aisle_seed *self, uint32_t units, uint32_t *spent);
 #endif

@@ -5,14 +5,14 @@
 
 #include <math.h>
 
-#define SPREAD 0.15F // of the box, where the other particles start
-#define VIA_SPACING 2.0   // m, wished between via-points
+#define SPREAD 0.15F       // of the box, where the other particles start
+#define VIA_SPACING 2.0    // m, wished between via-points
 #define SAMPLE_SPACING 0.1 // m, wished between samples
 #define SEED_DEFAULT 20180617U
 
 void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
-    self->work = (float *)aisle_arena_take(
-        arena, AISLE_PSO_WORK_LEN(2U * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES), sizeof(float));
+    self->work = (float *)aisle_arena_take(arena, AISLE_PSO_WORK_LEN(2U * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES),
+                                           sizeof(float));
     self->sample = (aisle_spline_sample *)aisle_arena_take(arena, AISLE_SWARM_SAMPLES_MAX, sizeof(aisle_spline_sample));
 }
 

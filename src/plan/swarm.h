@@ -1,12 +1,14 @@
 // swarm.h - the particle swarm on one leg: via-points around the seed, interpolated, safety first. Level 4.
 //
-// Variables: offsets (m) of up to AISLE_SWARM_VIAS via-points from points spread along the seed polyline by arc length, each in a box of
-// +- AISLE_SWARM_REACH. A particle is the spline (or polyline) through start, vias and goal. PAPERS 1: particle = via-points, linear or
-// not-a-knot cubic interpolation; ours: samples by arc length from the very start.
-// Cost pair: violation = metres of path whose clearance is short of the margin, by how much (sum of shortfall * ds), plus curvature above
-// curvature_max; value = integral of the objective's density at clearance and curvature.
-// Where the field leaves the margin in doubt the exact gap decides. The first particle is the seed itself; the verifier still judges the end.
-// Memory: work floats from the arena. Time: evaluations * samples; one unit per AISLE_SWARM_SAMPLES_PER_UNIT samples and per exact gap.
+// Variables: offsets (m) of up to AISLE_SWARM_VIAS via-points from points spread along the seed polyline by arc length,
+// each in a box of
+// +- AISLE_SWARM_REACH. A particle is the spline (or polyline) through start, vias and goal. PAPERS 1: particle =
+// via-points, linear or not-a-knot cubic interpolation; ours: samples by arc length from the very start. Cost pair:
+// violation = metres of path whose clearance is short of the margin, by how much (sum of shortfall * ds), plus
+// curvature above curvature_max; value = integral of the objective's density at clearance and curvature. Where the
+// field leaves the margin in doubt the exact gap decides. The first particle is the seed itself; the verifier still
+// judges the end. Memory: work floats from the arena. Time: evaluations * samples; one unit per
+// AISLE_SWARM_SAMPLES_PER_UNIT samples and per exact gap.
 #ifndef AISLE_PLAN_SWARM_H
 #define AISLE_PLAN_SWARM_H
 
@@ -43,14 +45,15 @@ typedef struct aisle_swarm {
 
 void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena);
 
-// Begins on a leg's polyline points[count]. AISLE_OK, or AISLE_PARTIAL: the leg is too short (below 0.2 m) or has too many
-// corners for the via-points; nothing begun.
+// Begins on a leg's polyline points[count]. AISLE_OK, or AISLE_PARTIAL: the leg is too short (below 0.2 m) or has too
+// many corners for the via-points; nothing begun.
 aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, const aisle_objective *objective,
                                const aisle_options_msg *options, const aisle_vec2 *points, uint32_t count);
 
 // AISLE_BUSY, then AISLE_OK.
 aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent);
 
-// Writes start, vias, goal of the best particle to points[AISLE_SWARM_VIAS + 2]; returns the count; 0 if nothing feasible was seen.
+// Writes start, vias, goal of the best particle to points[AISLE_SWARM_VIAS + 2]; returns the count; 0 if nothing
+// feasible was seen.
 uint32_t aisle_swarm_best(const aisle_swarm *self, aisle_vec2 *points);
 #endif

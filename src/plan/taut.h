@@ -2,12 +2,12 @@
 //
 // Local moves on one point b between a and c, each tested by straight free sweeps and kept only if the cost falls:
 //     remove b;  slide b towards a (then b-c must be free);  slide b towards c;  cut the corner at b by two points.
-// Cost: the objective's density along the legs, less what a corner arc of radius `arc_radius` saves at each point (2 T - R phi with T the
-// tangent length), so that points already on one arc are not split for nothing. For pure length the slides go as far as
-// they may (halving down to 0.5 mm): a point that cannot move has both legs touching the same round obstacle, which is the
-// local optimum there. For other densities slides by 1/2, 1/4, 1/8 of the leg.
-// Ends when a whole pass gains less than AISLE_TAUT_GAIN of the cost, or after AISLE_TAUT_PASSES.
-// Memory: the caller's points. Time: a pass is O(points * sweeps); sliced by point.
+// Cost: the objective's density along the legs, less what a corner arc of radius `arc_radius` saves at each point (2 T
+// - R phi with T the tangent length), so that points already on one arc are not split for nothing. For pure length the
+// slides go as far as they may (halving down to 0.5 mm): a point that cannot move has both legs touching the same round
+// obstacle, which is the local optimum there. For other densities slides by 1/2, 1/4, 1/8 of the leg. Ends when a whole
+// pass gains less than AISLE_TAUT_GAIN of the cost, or after AISLE_TAUT_PASSES. Memory: the caller's points. Time: a
+// pass is O(points * sweeps); sliced by point.
 #ifndef AISLE_PLAN_TAUT_H
 #define AISLE_PLAN_TAUT_H
 

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-#define WINDOW 8U      // path cells looked at on either side of the narrowest one
-#define ACROSS 40      // tries on either side of a cell
+#define WINDOW 8U        // path cells looked at on either side of the narrowest one
+#define ACROSS 40        // tries on either side of a cell
 #define ACROSS_CELLS 2.0 // how far to either side, in cells
 
 static void search_from(aisle_why *self, uint32_t open_from) {
@@ -63,7 +63,8 @@ static void measure_gap(aisle_why *self) {
         aisle_vec2 a = aisle_lattice_centre(lattice, seed->cells[before]);
         aisle_vec2 b = aisle_lattice_centre(lattice, seed->cells[after]);
         double length = aisle_vec2_distance(a, b);
-        aisle_vec2 along = length > 0.0 ? aisle_vec2_scale(aisle_vec2_sub(b, a), 1.0 / length) : aisle_vec2_of(1.0, 0.0);
+        aisle_vec2 along =
+            length > 0.0 ? aisle_vec2_scale(aisle_vec2_sub(b, a), 1.0 / length) : aisle_vec2_of(1.0, 0.0);
         aisle_vec2 at = self->place;
         int32_t id = 0;
         double gap = best_across(self, aisle_lattice_centre(lattice, seed->cells[i]), aisle_vec2_of(-along.y, along.x),

@@ -1,9 +1,13 @@
 // why.h - why the grid found no way: the narrowest gap on the widest way, or no way at all. Level 4.
 //
-// 1. Proof: does an optimistic grid (seed.h, WIDTH) for the disc that the footprint holds plus the margin still connect? If not, no way
-//    exists at any heading. If it does, nothing is proved: the way may pass below the grid's resolution, or need manoeuvres.
-// 2. The widest way: bisection over the field's values for the largest one whose cells still connect; 1 fails too: walled in.
-// 3. Its narrowest place: the path's cells of least field value, each moved across the path to where the exact gap is largest;
+// 1. Proof: does an optimistic grid (seed.h, WIDTH) for the disc that the footprint holds plus the margin still
+// connect? If not, no way
+//    exists at any heading. If it does, nothing is proved: the way may pass below the grid's resolution, or need
+//    manoeuvres.
+// 2. The widest way: bisection over the field's values for the largest one whose cells still connect; 1 fails too:
+// walled in.
+// 3. Its narrowest place: the path's cells of least field value, each moved across the path to where the exact gap is
+// largest;
 //    the least of these is half the gap told.
 // Memory: none of its own. Time: up to about 14 grid searches, sliced.
 #ifndef AISLE_PLAN_WHY_H

@@ -54,7 +54,8 @@ void aisle_curve_polyline(aisle_curve *self, const aisle_vec2 *points, uint32_t 
 // Appends biarcs to p with tangent direction (unit length) there; the curve's present heading is the first tangent.
 void aisle_curve_biarc_to(aisle_curve *self, aisle_vec2 p, aisle_vec2 tangent);
 
-// Marks the last waypoint as goal `id` and as a stop; if it is a goal already, a turn on the spot by nothing goes in between.
+// Marks the last waypoint as goal `id` and as a stop; if it is a goal already, a turn on the spot by nothing goes in
+// between.
 void aisle_curve_goal(aisle_curve *self, int32_t id);
 
 // Point of the piece from -> to at fraction f in [0, 1]: position on the line or arc, theta by fraction.
