@@ -15,6 +15,9 @@
 // Time: start() O(particles * dim); step() O(evals * dim) plus `evals` calls of cost(). No recursion. Objects share
 // nothing.
 // Determinism: same cfg and seed give the same bits, however the run is cut into steps.
+// Hits of seeds (tests/algo/test_pso.c), CONSTRICTION / FALLING: bowl with its minimum on the wall, 24 particles, 200 /
+// 200 of 200; Rosenbrock in 2 dimensions, 24 particles, 8000 evaluations to 1e-4, 100 / 99 of 100; Rastrigin in 3
+// dimensions, 40 particles, 12000 evaluations, 49 / 50 of 50.
 #ifndef AISLE_ALGO_PSO_H
 #define AISLE_ALGO_PSO_H
 
