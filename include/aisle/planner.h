@@ -34,9 +34,9 @@
 extern "C" {
 #endif
 
-#define AISLE_PROTOCOL 1               // status_msg.protocol
-#define AISLE_LEASE_US 1000000         // a path is valid this long after each sending
-#define AISLE_LEASE_RESEND_US 500000   // and sent again this often
+#define AISLE_PROTOCOL 1             // status_msg.protocol
+#define AISLE_LEASE_US 1000000       // a path is valid this long after each sending
+#define AISLE_LEASE_RESEND_US 500000 // and sent again this often
 #define AISLE_WORK_UNITS_DEFAULT 2000000
 
 typedef struct aisle_planner aisle_planner; // lies inside the caller's block
@@ -44,8 +44,8 @@ typedef struct aisle_planner aisle_planner; // lies inside the caller's block
 // Zeroed = the documented defaults.
 typedef struct aisle_config {
     aisle_limits limits;
-    int64_t boot_id;          // told to receivers; anything that differs from boot to boot
-    int32_t work_units;       // budget of a request that names none; 0 = AISLE_WORK_UNITS_DEFAULT
+    int64_t boot_id;           // told to receivers; anything that differs from boot to boot
+    int32_t work_units;        // budget of a request that names none; 0 = AISLE_WORK_UNITS_DEFAULT
     aisle_vehicle_msg vehicle; // the vehicle until a message brings one; used if has_vehicle
     bool has_vehicle;
 } aisle_config;
@@ -79,8 +79,8 @@ typedef struct aisle_input {
 } aisle_input;
 
 typedef enum aisle_event_kind {
-    AISLE_EVENT_PATH,  // for _PATH: a new path, the same one with its lease renewed, or a revocation
-    AISLE_EVENT_REPLY  // for _REPLY: the answer to a query
+    AISLE_EVENT_PATH, // for _PATH: a new path, the same one with its lease renewed, or a revocation
+    AISLE_EVENT_REPLY // for _REPLY: the answer to a query
 } aisle_event_kind;
 
 // An encoded path_t, proved by the verifier or with status NONE. Bytes stay valid until the next
@@ -93,22 +93,22 @@ typedef struct aisle_event {
 
 // Counters since init; they never decrease. Index into aisle_planner_counters().
 typedef enum aisle_counter {
-    AISLE_COUNTER_INPUTS,            // submit() calls that were taken
-    AISLE_COUNTER_REJECTED,          // messages refused, whatever the cause
-    AISLE_COUNTER_DUPLICATES,        // messages already held, ignored
-    AISLE_COUNTER_LAYOUTS,           // layouts that took effect
-    AISLE_COUNTER_QUERIES,           // queries answered
-    AISLE_COUNTER_GOAL_LISTS,        // goal lists answered
-    AISLE_COUNTER_PATHS,             // proved paths handed out, lease renewals not counted
-    AISLE_COUNTER_NO_PATHS,          // answers without a path
-    AISLE_COUNTER_VERIFY_FAILED,     // candidates the verifier turned down
-    AISLE_COUNTER_NODES,             // grid nodes expanded
-    AISLE_COUNTER_SWARM_EVALS,       // candidate paths scored by the swarm
-    AISLE_COUNTER_VERIFY_INTERVALS,  // intervals of motion the verifier looked at
-    AISLE_COUNTER_WORK_UNITS,        // work units spent
-    AISLE_COUNTER_OPEN_NODES_MAX,    // high-water mark of the grid search's open list
-    AISLE_COUNTER_CCD_CALLS,         // narrow-phase tests
-    AISLE_COUNTER_CCD_SUPPORT_MAX,   // most support calls of one narrow-phase test
+    AISLE_COUNTER_INPUTS,           // submit() calls that were taken
+    AISLE_COUNTER_REJECTED,         // messages refused, whatever the cause
+    AISLE_COUNTER_DUPLICATES,       // messages already held, ignored
+    AISLE_COUNTER_LAYOUTS,          // layouts that took effect
+    AISLE_COUNTER_QUERIES,          // queries answered
+    AISLE_COUNTER_GOAL_LISTS,       // goal lists answered
+    AISLE_COUNTER_PATHS,            // proved paths handed out, lease renewals not counted
+    AISLE_COUNTER_NO_PATHS,         // answers without a path
+    AISLE_COUNTER_VERIFY_FAILED,    // candidates the verifier turned down
+    AISLE_COUNTER_NODES,            // grid nodes expanded
+    AISLE_COUNTER_SWARM_EVALS,      // candidate paths scored by the swarm
+    AISLE_COUNTER_VERIFY_INTERVALS, // intervals of motion the verifier looked at
+    AISLE_COUNTER_WORK_UNITS,       // work units spent
+    AISLE_COUNTER_OPEN_NODES_MAX,   // high-water mark of the grid search's open list
+    AISLE_COUNTER_CCD_CALLS,        // narrow-phase tests
+    AISLE_COUNTER_CCD_SUPPORT_MAX,  // most support calls of one narrow-phase test
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

@@ -124,8 +124,11 @@ static bool cut_pieces(aisle_compose *self, double longest) {
         }
         for (uint32_t k = 1; k < (uint32_t)parts; k++) {
             aisle_pose2 p = aisle_piece_at(from, to, (double)k / parts);
-            path->waypoints[n++] = (aisle_waypoint_msg){
-                .x = p.x, .y = p.y, .theta = aisle_angle_wrap(p.theta), .curvature = to->curvature};
+            path->waypoints[n++] = (aisle_waypoint_msg){.x = p.x,
+                                                        .y = p.y,
+                                                        .theta = aisle_angle_wrap(p.theta),
+                                                        .curvature = to->curvature,
+                                                        .flags = (int16_t)(to->flags & AISLE_WAYPOINT_REVERSE)};
         }
         path->waypoints[n++] = *to;
     }

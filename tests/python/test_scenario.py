@@ -21,13 +21,13 @@ def write(folder, **changes):
 
 
 def test_bounds_grow_by_radius_and_margin(tmp_path):
-    assert read_scenario(write(tmp_path), 0.1).world.bounds == pytest.approx((-0.4, -0.4, 9.4, 6.4))
-    assert read_scenario(write(tmp_path), -1.0).world.bounds == pytest.approx((-0.3, -0.3, 9.3, 6.3))
+    assert read_scenario(write(tmp_path), 0.1).world.bounds == pytest.approx((-0.401, -0.401, 9.401, 6.401))
+    assert read_scenario(write(tmp_path), -1.0).world.bounds == pytest.approx((-0.301, -0.301, 9.301, 6.301))
 
 
 def test_a_point_is_a_disc_of_one_millimetre(tmp_path):
     scenario = read_scenario(write(tmp_path, robot={"radius": 0.0}))
-    assert scenario.radius == 0.001 and scenario.world.bounds[0] == -0.001
+    assert scenario.radius == 0.001 and scenario.world.bounds[0] == -0.002
 
 
 def test_clockwise_polygons_are_turned(tmp_path):

@@ -18,9 +18,13 @@ void setUp(void) {
     curve = (aisle_curve){.w = w, .capacity = CAPACITY};
 }
 
-void tearDown(void) { TEST_ASSERT_EQUAL_INT32(4242, w[CAPACITY].goal_id); }
+void tearDown(void) {
+    TEST_ASSERT_EQUAL_INT32(4242, w[CAPACITY].goal_id);
+}
 
-static double uniform(aisle_rng *rng, double lo, double hi) { return lo + (hi - lo) * (double)aisle_rng_float(rng); }
+static double uniform(aisle_rng *rng, double lo, double hi) {
+    return lo + (hi - lo) * (double)aisle_rng_float(rng);
+}
 
 // ---- an independent reading of a piece: direction of motion at its ends, by centre and radius in long double
 
@@ -206,7 +210,8 @@ static void test_an_arc_no_wider_than_the_legs_distance_keeps_that_distance_for_
         aisle_curve_polyline(&curve, points, 3, &rule);
         for (int k = 0; k < 200; k++) { // obstacles that both legs keep away from
             aisle_vec2 p = {uniform(&rng, -1.0, 8.0), uniform(&rng, -1.0, 7.0)};
-            if (distance_to_segment(p, points[0], points[1]) < keep || distance_to_segment(p, points[1], points[2]) < keep) {
+            if (distance_to_segment(p, points[0], points[1]) < keep ||
+                distance_to_segment(p, points[1], points[2]) < keep) {
                 continue;
             }
             for (uint32_t i = 1; i < curve.n; i++) {

@@ -212,6 +212,14 @@ def _check_limits(path: path_t, body: Body, report: Report) -> None:
             return
 
 
+def rest_to_rest_time(length: float, v_max: float, lim: dict[str, float]) -> float:
+    """Least time from rest to rest: a trapezoid of speed, or a triangle."""
+    up, down = lim["a_max"], lim["d_max"]
+    peak = min(v_max, math.sqrt(2.0 * length * up * down / (up + down)))
+    ramps = peak * peak * (up + down) / (2.0 * up * down)
+    return peak / up + peak / down + (length - ramps) / peak
+
+
 def _piece_fault(a: waypoint_t, b: waypoint_t, p: geometry.Piece, body: Body) -> str:
     lim = body.limits
     v, dt = max(abs(a.v), abs(b.v)), b.t - a.t
@@ -222,7 +230,7 @@ def _piece_fault(a: waypoint_t, b: waypoint_t, p: geometry.Piece, body: Body) ->
         return "" if dt >= need * (1.0 - LIMIT_TOLERANCE) - 1e-4 else f"turns {p.turn:.3f} rad in {dt:.3f} s"
     change = (b.v * b.v - a.v * a.v) / (2.0 * p.length)
     limit = lim["a_max"] if change > 0.0 else lim["d_max"]
-    need = 2.0 * p.length / max(abs(a.v) + abs(b.v), 1e-9)
+    need = 2.0 * p.length / (abs(a.v) + abs(b.v)) if abs(a.v) + abs(b.v) > 1e-6 else rest_to_rest_time(p.length, v_max, lim)
     checks = [
         (v, v_max, "speed"),
         (abs(change), limit + 1e-4 / p.length, "acceleration"),

@@ -13,6 +13,7 @@ from aisle_tools.errors import UserError
 from aisle_tools.world import Polygon, World
 
 POINT_RADIUS = 0.001  # m: a point robot is a disc of 1 mm
+BOUNDS_SLACK = 0.001  # m: a centre right on the bounds is allowed, and a proof needs some room
 POLYGONS_MAX = 4096
 POLYGON_VERTICES_MAX = 16
 VERTICES_MAX = 32768
@@ -32,7 +33,7 @@ def read_scenario(path: Path, margin: float = 0.0, resolution: float = 0.0) -> S
     data = _load(path)
     robot = _get(path, data, "robot", dict)
     radius = float(robot.get("radius", 0.0)) or POINT_RADIUS
-    grow = radius + max(margin, 0.0)
+    grow = radius + max(margin, 0.0) + BOUNDS_SLACK
     x0, y0, x1, y1 = _numbers(path, _get(path, data, "bounds", list), "bounds", 4)
     if x0 >= x1 or y0 >= y1:
         raise UserError(f"{path}: bounds must be [x_min, y_min, x_max, y_max]")
