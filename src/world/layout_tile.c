@@ -207,7 +207,7 @@ aisle_status aisle_layout_take_tile(aisle_layout *self, const aisle_grid_chunk_m
         return status;
     }
     aisle_lattice lattice;
-    tile t;
+    tile t = {0};
     status = judge_tile(self, msg, &lattice, &t, why);
     if (status != AISLE_OK) {
         return status;
