@@ -12,11 +12,12 @@
 #include "world/layout.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdint.h>
 #include <string.h>
 
 #define HALL_UNUSED __attribute__((unused)) static
 #define HALL_BOXES_MAX 64
+#define HALL_BLOCK (32U << 20)
 
 typedef struct hall_box {
     double x0, y0, x1, y1;
@@ -31,13 +32,12 @@ static aisle_vehicle hall_vehicle;
 static const aisle_limits hall_limits = {
     .cells = 1048576U, .polygons = 256U, .vertices = 2048U, .open_nodes = 131072U, .requests = 4U};
 
-// One block for everything a test carves; zeroed by the arena, freed by nobody: the program ends.
+// One block for everything a test carves, zeroed by the arena; the next call takes it over.
 HALL_UNUSED aisle_arena hall_arena(size_t bytes) {
-    static void *block;
-    free(block);
-    block = aligned_alloc(AISLE_ARENA_ALIGN, (bytes + AISLE_ARENA_ALIGN - 1U) / AISLE_ARENA_ALIGN * AISLE_ARENA_ALIGN);
-    TEST_ASSERT_NOT_NULL(block);
-    return aisle_arena_over(block, bytes / AISLE_ARENA_ALIGN * AISLE_ARENA_ALIGN);
+    static unsigned char block[HALL_BLOCK + AISLE_ARENA_ALIGN];
+    TEST_ASSERT_TRUE(bytes <= HALL_BLOCK);
+    size_t off = (AISLE_ARENA_ALIGN - (uintptr_t)block % AISLE_ARENA_ALIGN) % AISLE_ARENA_ALIGN;
+    return aisle_arena_over(block + off, bytes);
 }
 
 HALL_UNUSED void hall_begin(double width, double height) {
