@@ -26,6 +26,7 @@ static void test_names_are_those_of_the_documents(void) {
         TEST_ASSERT_EQUAL(i, aisle_channel_find("AISLE", names[i], strlen(names[i])));
     }
     TEST_ASSERT_EQUAL(AISLE_CHANNEL_COUNT, aisle_channel_find("AISLE", "AISLE_QUERY2", 12));
+    TEST_ASSERT_EQUAL(AISLE_CHANNEL_COUNT, aisle_channel_find("AISLE", "AISLE-QUERY", 11));
     TEST_ASSERT_EQUAL(AISLE_CHANNEL_COUNT, aisle_channel_find("AISLE", "AISLE_", 6));
     TEST_ASSERT_EQUAL(AISLE_CHANNEL_COUNT, aisle_channel_find("AISLE", "", 0));
 }

@@ -111,7 +111,7 @@ static void test_hostile_obstacles_never_touch_the_slot_of_a_real_source(void) {
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, good->bytes, good->size));
     put_text(AISLE_CHANNEL_OBSTACLES, "");
     put_text(AISLE_CHANNEL_OBSTACLES, "short");
-    static const int32_t sources[] = {4, -1, 256, 0x01000003, INT32_MIN};
+    static const int32_t sources[] = {4, -1, 256, 0x0103, 0x00010003, 0x01000003, INT32_MIN};
     for (size_t i = 0; i < sizeof sources / sizeof sources[0]; i++) {
         const test_message *m = make_obstacles(sources[i], 1);
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, m->bytes, m->size));
@@ -199,6 +199,26 @@ static void test_full_ring_refuses_counts_and_keeps_what_it_has(void) {
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big));
     TEST_ASSERT_TRUE(inbox.used_max >= 3 * sizeof big && inbox.used_max <= RING);
 }
+static void test_message_a_few_bytes_too_long_for_the_rings_end_goes_to_its_start(void) {
+    static uint8_t big[64992]; // 65000 with what stands in front of it: two leave 8 bytes
+    for (uint32_t size = 1; size < 40; size++) {
+        aisle_inbox_message m;
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big));
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big - size / 2U));
+        TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
+        aisle_inbox_pop(&inbox, &m);
+        TEST_ASSERT_EQUAL(
+            AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_QUERY, "0123456789012345678901234567890123456789", size));
+        TEST_ASSERT_TRUE(aisle_inbox_invariants_hold(&inbox));
+        for (int i = 0; i < 2; i++) {
+            TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
+            aisle_inbox_pop(&inbox, &m);
+        }
+        TEST_ASSERT_EQUAL_STRING_LEN("0123456789012345678901234567890123456789", (const char *)m.bytes, size);
+        TEST_ASSERT_EQUAL_HEX8(0xA5, ring[RING]);
+        expect_empty();
+    }
+}
 static void test_snapshot_that_finds_no_place_to_be_pinned_is_counted(void) {
     static uint8_t big[64990];
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big));
@@ -267,6 +287,7 @@ int main(void) {
     RUN_TEST(test_commands_overtake_all_but_the_goals_before_them);
     RUN_TEST(test_many_or_long_commands_go_into_the_ring_and_none_is_lost);
     RUN_TEST(test_full_ring_refuses_counts_and_keeps_what_it_has);
+    RUN_TEST(test_message_a_few_bytes_too_long_for_the_rings_end_goes_to_its_start);
     RUN_TEST(test_snapshot_that_finds_no_place_to_be_pinned_is_counted);
     RUN_TEST(test_sizes_no_message_has_are_refused_unread);
     RUN_TEST(test_ten_thousand_random_puts_and_takes_keep_order_and_content);

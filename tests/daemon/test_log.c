@@ -101,13 +101,16 @@ static void test_garbage_between_events_is_skipped_and_counted(void) {
     append(2, "CD", 4);
     append_raw("\xED\xED\xA1\xDA\xED\xA1", 6);
     append(3, "EF", 4);
+    append_raw("x", 1);
+    append(4, "GH", 4);
     append_raw("end", 3);
     start();
     expect(1, "AB", 4);
     expect(2, "CD", 4);
     expect(3, "EF", 4);
+    expect(4, "GH", 4);
     expect_end();
-    TEST_ASSERT_EQUAL_INT64(17, reader.garbage_bytes);
+    TEST_ASSERT_EQUAL_INT64(18, reader.garbage_bytes);
 }
 static void test_implausible_lengths_are_garbage(void) {
     static const uint32_t lengths[][2] = {{0, 4}, {64, 4}, {0xFFFFFFFFU, 4}, {2, (1U << 28U) + 1U}, {2, 0xFFFFFFFFU}};

@@ -147,6 +147,23 @@ static void test_status_keeps_its_rate_while_planning(void) {
     TEST_ASSERT_INT_WITHIN(2, 11, num_diag);
     TEST_ASSERT_TRUE(loop.slice >= 500 && loop.slice <= 4000); // about 2 ms at a unit per microsecond
 }
+static uint32_t units_per_us, us_per_unit;
+static void work_takes_its_time(uint32_t units) {
+    monotonic += units * us_per_unit / units_per_us;
+}
+static void test_slice_follows_the_speed_of_the_host_both_ways(void) {
+    static const uint32_t speeds[][2] = {{1, 10}, {50, 1}, {1, 1}}; // units per us, us per unit
+    static const uint32_t bounds[][2] = {{80, 400}, {50000, 200000}, {1000, 4000}};
+    fake.on_step = work_takes_its_time;
+    fake.units_per_request = 1000000000;
+    send_to(AISLE_CHANNEL_QUERY, 1);
+    for (int i = 0; i < 3; i++) {
+        units_per_us = speeds[i][0];
+        us_per_unit = speeds[i][1];
+        turn(50);
+        TEST_ASSERT_TRUE(loop.slice >= bounds[i][0] && loop.slice <= bounds[i][1]);
+    }
+}
 static void test_fixed_slice_stays_as_set(void) {
     settings.work_units_per_slice = 77;
     aisle_loop_parts parts = loop.parts;
@@ -421,6 +438,7 @@ int main(void) {
     RUN_TEST(test_first_turn_sends_status_and_diag);
     RUN_TEST(test_status_and_diag_keep_their_rates);
     RUN_TEST(test_status_keeps_its_rate_while_planning);
+    RUN_TEST(test_slice_follows_the_speed_of_the_host_both_ways);
     RUN_TEST(test_fixed_slice_stays_as_set);
     RUN_TEST(test_status_is_sent_on_change_but_not_in_a_burst);
     RUN_TEST(test_messages_reach_the_planner_in_order_and_outputs_their_channels);
