@@ -365,7 +365,10 @@ static void begin_swarm_leg(aisle_route *self);
 
 static aisle_status after_first_proof(aisle_route *self) {
     self->proof_units = self->spent;
-    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->stops) {
+    // A taut string cannot be beaten on length: AUTO leaves the swarm to the other objectives.
+    bool taut_is_best =
+        self->request.options.planner == AISLE_OPTIONS_AUTO && aisle_objective_is_length(&self->objective);
+    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops) {
         self->stage = AISLE_ROUTE_END;
         return AISLE_OK;
     }

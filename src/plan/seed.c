@@ -59,6 +59,14 @@ static uint32_t enter_width(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
     return self->space->grid->field[to] >= self->open_from ? AISLE_ASTAR_FACTOR_ONE : AISLE_ASTAR_BARRED_CELL;
 }
 
+static uint32_t enter_proof(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
+    aisle_seed *self = (aisle_seed *)ctx;
+    (void)from;
+    (void)dir;
+    bool open = aisle_space_cell_holds(self->space, to, self->proof_reach, &self->units);
+    return open ? AISLE_ASTAR_FACTOR_ONE : AISLE_ASTAR_BARRED_CELL;
+}
+
 static bool may_stand(aisle_seed *self, uint32_t cell) {
     return self->space->mode == AISLE_SPACE_ALONG || aisle_space_cell_free(self->space, cell, &self->units);
 }
@@ -103,7 +111,7 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
     self->points = points;
     self->point_count = 0;
     self->units = 0;
-    self->by_width = false;
+    self->for_refusal = false;
     tabulate(self);
     aisle_astar_config cfg = search_config(self, space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along);
     if (!join(self, start, true, &cfg.start) || !join(self, goal, false, &cfg.goal)) {
@@ -229,16 +237,13 @@ aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent) 
     return st;
 }
 
-void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach) {
+static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+                              aisle_astar_enter_fn enter) {
     self->space = space;
-    self->by_width = true;
+    self->for_refusal = true;
     self->units = 0;
     self->phase = AISLE_SEED_SEARCH;
-    // The best point of a cell is at most half a diagonal from its centre, the obstacle at most half a diagonal nearer
-    // than the centre of its cell: open if sqrt(field) >= reach / res - sqrt(2).
-    double cells = reach / space->grid->lattice.res - 1.41421356237309505;
-    self->open_from = cells > 0.0 ? (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX) : 0U;
-    aisle_astar_config cfg = search_config(self, enter_width);
+    aisle_astar_config cfg = search_config(self, enter);
     bool inside;
     cfg.start = aisle_lattice_cell(&space->grid->lattice, start, &inside);
     cfg.goal = aisle_lattice_cell(&space->grid->lattice, goal, &inside);
@@ -246,8 +251,19 @@ void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 sta
     AISLE_ASSERT(st == AISLE_OK);
 }
 
-aisle_status aisle_seed_step_width(aisle_seed *self, uint32_t units, uint32_t *spent) {
-    AISLE_ASSERT(self->by_width && self->phase == AISLE_SEED_SEARCH);
+void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach) {
+    self->proof_reach = reach;
+    start_for_refusal(self, space, start, goal, enter_proof);
+}
+
+void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+                            uint32_t open_from) {
+    self->open_from = open_from;
+    start_for_refusal(self, space, start, goal, enter_width);
+}
+
+aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent) {
+    AISLE_ASSERT(self->for_refusal && self->phase == AISLE_SEED_SEARCH);
     aisle_status st = search(self, units);
     *spent += self->units;
     self->units = 0;

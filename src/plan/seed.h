@@ -4,11 +4,15 @@
 // so that the homotopy class already suits the objective. FREE_TURN bars cells where the turning disc does not fit
 // (exactly, where the field leaves a doubt); ALONG bars moves the footprint cannot make with its heading along them.
 // Ends: start and goal are joined to the nearest free cell centre within AISLE_SEED_JOIN cells that a straight free way
-// leads to. Straightening: from each kept point the farthest cell along the path that a free straight way reaches
-// (galloping, then halving) at no higher cost than the cells' own way. WIDTH mode answers a different question for
-// refusals: is there a way for a smaller disc? Optimistic: a cell is open if some point of it may be `width_reach` or
-// more from every obstacle; if that fails to connect, no way of that width exists: a proof. Memory: search 2 bytes a
-// cell, path 4 bytes * AISLE_SEED_CELLS_MAX, table. Time: O(cells expanded), sliced.
+// leads to.
+// Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping,
+// then halving) at no higher cost than the cells' own way.
+//
+// Two more searches serve refusals (why.h) and give no polyline. PROOF: a cell is open if any point of it may keep
+// `reach` from every obstacle (exactly, down to 1 / 64 of a cell); if such cells do not connect, no way of that width
+// exists. WIDTH: a cell is open from a field value on.
+//
+// Memory: search 2 bytes a cell, path 4 bytes * AISLE_SEED_CELLS_MAX, table. Time: O(cells expanded), sliced.
 #ifndef AISLE_PLAN_SEED_H
 #define AISLE_PLAN_SEED_H
 
@@ -37,8 +41,9 @@ typedef struct aisle_seed {
     uint32_t cell_count, at;
     uint16_t *factor;   // [AISLE_SEED_TABLE] by field value
     uint32_t open_from; // WIDTH: least field value of an open cell
-    bool by_width;
-    uint32_t units; // spent inside callbacks since the last step
+    double proof_reach; // PROOF: m
+    bool for_refusal;   // PROOF or WIDTH
+    uint32_t units;     // spent inside callbacks since the last step
     aisle_seed_phase phase;
     aisle_vec2 *points; // the polyline under way; the caller's [AISLE_SEED_POINTS_MAX]
     uint32_t point_count;
@@ -56,8 +61,9 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
 // *spent.
 aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent);
 
-// WIDTH: whether cells whose best point keeps `reach` join start and goal; only aisle_astar_* results follow, no
-// polyline.
-void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach);
-aisle_status aisle_seed_step_width(aisle_seed *self, uint32_t units, uint32_t *spent);
+// Whether start and goal connect; only aisle_astar_* results follow.
+void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach);
+void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+                            uint32_t open_from);
+aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent);
 #endif

@@ -11,6 +11,8 @@
 #define STRAY_STEP 1e-3     // m, of piece_clearance's subdivision: from straight ways
 #define OVERREACH_STEP 4e-3 // m, and of the hull beyond the sweep of a body that turns
 #define SUBDIVISIONS_MAX 4096U
+#define HOLDS_DEPTH 6U                    // halvings of a cell
+#define HALF_DIAGONAL 0.70710678118654752 // of a square of side 1
 
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
     self->cell_free = (uint64_t *)aisle_arena_take(arena, (size_t)cells / 64U + 1U, sizeof(uint64_t));
@@ -64,7 +66,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units) {
     double res = self->grid->lattice.res;
     double need = sqrt(self->reach * self->reach + 0.5 * res * res);
     double centre_gap = sqrt((double)self->grid->field[cell]) * res;
-    double half_diagonal = res * 0.70710678118654752;
+    double half_diagonal = res * HALF_DIAGONAL;
     if (centre_gap - half_diagonal >= need) {
         return true;
     }
@@ -82,6 +84,49 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units) {
     }
     self->cell_free[cell / 64U] |= bit;
     return true;
+}
+
+// Gap of a bare point, at most cap.
+static double point_gap(const aisle_space *self, aisle_vec2 p, double cap) {
+    aisle_convex point = {&p, 1U, 0.0};
+    return aisle_layout_gap(self->layout, &point, cap, NULL);
+}
+
+bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach, uint32_t *units) {
+    double side = self->grid->lattice.res;
+    double centre_gap = sqrt((double)self->grid->field[cell]) * side;
+    if (centre_gap - side * HALF_DIAGONAL >= reach) {
+        return true;
+    }
+    if (centre_gap + 2.0 * side * HALF_DIAGONAL < reach) {
+        return false;
+    }
+    aisle_vec2 open[4 * HOLDS_DEPTH + 1]; // centres of squares in doubt; their depths beside them
+    uint32_t depth[4 * HOLDS_DEPTH + 1];
+    uint32_t count = 1;
+    open[0] = aisle_lattice_centre(&self->grid->lattice, cell);
+    depth[0] = 0;
+    while (count > 0U) {
+        count--;
+        aisle_vec2 c = open[count];
+        uint32_t d = depth[count];
+        double half = 0.5 * side / (double)(1U << d);
+        double gap = point_gap(self, c, reach + 4.0 * half);
+        *units += 1U;
+        if (gap >= reach || (d == HOLDS_DEPTH && gap + 2.0 * half * HALF_DIAGONAL >= reach)) {
+            return true;
+        }
+        if (gap + 2.0 * half * HALF_DIAGONAL < reach) {
+            continue;
+        }
+        for (int k = 0; k < 4; k++) {
+            double dx = (k & 1) != 0 ? 0.5 * half : -0.5 * half;
+            double dy = (k & 2) != 0 ? 0.5 * half : -0.5 * half;
+            open[count] = aisle_vec2_of(c.x + dx, c.y + dy);
+            depth[count++] = d + 1U;
+        }
+    }
+    return false;
 }
 
 // The exact footprint driven straight from a to b, heading along it.

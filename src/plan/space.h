@@ -43,6 +43,10 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
 // ends at least sqrt(reach^2 + res^2 / 2) from a point keep the segment at least reach from it.) Remembered.
 bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units);
 
+// Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap: "no" is a
+// proof; "yes" may be wrong by 1 / 64 of a cell. Adds its units.
+bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach, uint32_t *units);
+
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.
 bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 

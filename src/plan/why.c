@@ -9,14 +9,13 @@
 #define ACROSS_CELLS 2.0 // how far to either side, in cells
 
 static void search_from(aisle_why *self, uint32_t open_from) {
-    aisle_seed_start_width(self->seed, self->space, self->start, self->goal, 0.0);
-    self->seed->open_from = open_from;
+    aisle_seed_start_width(self->seed, self->space, self->start, self->goal, open_from);
 }
 
 void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal) {
     *self = (aisle_why){.seed = seed, .space = space, .start = start, .goal = goal};
     double reach = space->vehicle->inner_radius + space->vehicle->margin;
-    aisle_seed_start_width(seed, space, start, goal, reach);
+    aisle_seed_start_proof(seed, space, start, goal, reach);
     double cells = reach / space->grid->lattice.res + 2.0;
     self->hi = (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX);
 }
@@ -119,7 +118,7 @@ static aisle_status next_search(aisle_why *self, bool found) {
 }
 
 aisle_status aisle_why_step(aisle_why *self, uint32_t units, uint32_t *spent) {
-    aisle_status st = aisle_seed_step_width(self->seed, units, spent);
+    aisle_status st = aisle_seed_step_refusal(self->seed, units, spent);
     if (st == AISLE_BUSY || st == AISLE_ERR_CAPACITY) {
         return st;
     }

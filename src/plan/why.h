@@ -1,6 +1,6 @@
 // why.h - why the grid found no way: the narrowest gap on the widest way, or no way at all. Level 4.
 //
-// 1. Proof: does an optimistic grid (seed.h, WIDTH) for the disc that the footprint holds plus the margin still
+// 1. Proof: does an optimistic grid (seed.h, PROOF) for the disc that the footprint holds plus the margin still
 // connect? If not, no way
 //    exists at any heading. If it does, nothing is proved: the way may pass below the grid's resolution, or need
 //    manoeuvres.
