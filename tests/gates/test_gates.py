@@ -163,7 +163,7 @@ class Stack(unittest.TestCase):
 
     def test_recursion_is_found_through_any_number_of_functions(self):
         text = self.ci([(n, 8, "static") for n in "abc"], [("a", "b"), ("b", "c"), ("c", "b")])
-        self.assertIn("recursion: b -> c -> b", stack.analyse([text], {})[3])
+        self.assertIn("recursion: b -> c -> b (x.c)", stack.analyse([text], {})[3])
 
     def test_frames_without_bound_unknown_callees_and_unlisted_pointers_fail(self):
         text = self.ci([("a", 8, "dynamic"), ("b", 8, "static")], [("a", "qsort"), ("b", "__indirect_call")])

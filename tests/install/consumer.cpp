@@ -2,6 +2,7 @@
 #include <aisle/planner.h>
 #include <aisle/version.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>

@@ -152,7 +152,7 @@ def analyse(texts, inlets):
         graph.read(text)
     calls, problems = resolve(graph, inlets)
     depth, deepest, cycles = depths(graph, calls)
-    problems += [f"recursion: {' -> '.join(plain(t) for t in cycle)}" for cycle in cycles]
+    problems += [f"recursion: {' -> '.join(plain(t) for t in cycle)} ({graph.file[cycle[0]]})" for cycle in cycles]
     problems += [f"{title} has a frame of no fixed size" for title in graph.unbounded]
     return graph, depth, deepest, problems
 
