@@ -45,7 +45,15 @@ const aisle_grid *aisle_layout_grid(const aisle_layout *self) {
 }
 
 aisle_aabb aisle_layout_bounds(const aisle_layout *self) {
-    return aisle_layout_held(self)->header.bounds;
+    const aisle_layout_store *store = aisle_layout_held(self);
+    aisle_aabb area = store->header.bounds;
+    if (store->header.tiles > 0) { // what lies within the bounds but off the scan is not known to be free
+        const aisle_lattice *l = &store->lattice;
+        area.lo = aisle_vec2_of(aisle_max(area.lo.x, l->x0), aisle_max(area.lo.y, l->y0));
+        area.hi.x = aisle_min(area.hi.x, l->x0 + (double)l->w * l->res);
+        area.hi.y = aisle_min(area.hi.y, l->y0 + (double)l->h * l->res);
+    }
+    return area;
 }
 
 uint32_t aisle_layout_zone_count(const aisle_layout *self) {
