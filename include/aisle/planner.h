@@ -141,7 +141,8 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event);
 // When step() next has something to do by itself (lease, pose timeout); INT64_MAX: never.
 int64_t aisle_planner_next_deadline(const aisle_planner *self);
 
-// The heartbeat as it stands at now_us; seq is the caller's to set. O(1).
+// The heartbeat as it stands at now_us; seq is the caller's to set. cause: why the state is what it is (BLOCKED, WAITING),
+// else that of the last refused input, until one of its kind is taken. O(waypoints).
 void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status);
 
 // [AISLE_COUNTER_COUNT]; valid as long as the planner.

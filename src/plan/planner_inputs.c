@@ -332,8 +332,11 @@ aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const ais
         self->now_us = now_us;
     }
     aisle_status st = dispatch(self, input);
-    if (st == AISLE_OK || st == AISLE_PARTIAL) {
+    if (st == AISLE_ERR_DATA) {
+        self->cause_kind = input->kind;
+    } else if (st == AISLE_OK || st == AISLE_PARTIAL) {
         self->counters[AISLE_COUNTER_INPUTS]++;
+        self->cause = self->cause_kind == input->kind ? 0 : self->cause;
     }
     return st;
 }

@@ -53,7 +53,8 @@ struct aisle_planner {
     uint8_t *refusal[2];   // [AISLE_REFUSAL_BYTES] for PATH and REPLY
     aisle_outgoing out[2]; // by aisle_event_kind
     int64_t lease_due_us;
-    int16_t cause; // last refused input
+    int16_t cause; // of the last refused input, until one of its kind is taken
+    aisle_input_kind cause_kind;
     int32_t cause_id;
     int64_t counters[AISLE_COUNTER_COUNT];
     aisle_memory_row rows[AISLE_MEMORY_ROWS];
