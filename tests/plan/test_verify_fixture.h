@@ -157,8 +157,12 @@ static uint32_t polygons_crc(void) {
 
 UNUSED_OK void world_build(void) {
     aisle_refusal why = {0};
-    aisle_limits limits = {.cells = 4096, .polygons = 828, .vertices = 16384, .open_nodes = 1024, .requests = 1};
+    aisle_limits limits = {.polygons = 828, .vertices = 16384, .open_nodes = 1024, .requests = 1};
     uintptr_t start = ((uintptr_t)world_block + 63U) & ~(uintptr_t)63U;
+    double side = world_msg.resolution > 0.0F ? (double)world_msg.resolution : 1.0;
+    double cells =
+        ((world_bounds[2] - world_bounds[0]) / side + 1.0) * ((world_bounds[3] - world_bounds[1]) / side + 1.0);
+    limits.cells = cells > 4096.0 ? (uint32_t)cells : 4096U;
     if (world_bits != NULL) {
         uint32_t rows = AISLE_GRID_CHUNK_MAX_BYTES / ((world_w + 7U) / 8U);
         world_msg.num_grid_chunks = (int16_t)((world_h + rows - 1) / rows);
