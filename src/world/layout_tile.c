@@ -138,7 +138,8 @@ static void paint_bits(aisle_layout_store *store, const tile *t) {
         const uint8_t *row = &t->bytes[y * stride];
         uint32_t first = 0; // of the free cells before x
         for (uint32_t x = 0; x < t->w; x++) {
-            if ((row[x / 8U] >> (x % 8U) & 1U) != 0) {
+            const uint32_t byte = row[x / 8U];
+            if ((byte >> (x % 8U) & 1U) != 0) {
                 aisle_layout_store_free_run(store, t->y0 + y, t->x0 + first, t->x0 + x);
                 first = x + 1U;
             }
