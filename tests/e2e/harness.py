@@ -59,10 +59,11 @@ class Daemon:
         return self.statuses[-1][1]
 
     def fresh_status(self) -> status_t:
-        """One that was sent after now."""
-        before = self.status.seq
-        boot = self.status.boot_id
-        assert self.bus.spin(PATIENCE, lambda: self.status.seq > before + 1 or self.status.boot_id != boot)
+        """One that was sent after now; what waits in the queue is older."""
+        while self.bus.lcm.handle_timeout(0) > 0:
+            pass
+        before = len(self.statuses)
+        assert self.bus.spin(PATIENCE, lambda: len(self.statuses) >= before + 2)
         return self.status
 
     def wait(self, condition, seconds: float = PATIENCE) -> bool:  # noqa: ANN001

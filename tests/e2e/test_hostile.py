@@ -11,6 +11,7 @@ from harness import CHANNELS
 
 SEEDS = range(3)
 MALFORMED, OVER_LIMIT, OVERSIZE = 105, 106, 102  # counter_id of _DIAG
+SNAPSHOTS = ("VEHICLE", "POSE", "OBSTACLES")
 
 
 def options():
@@ -120,9 +121,9 @@ def test_random_bytes_do_no_harm_and_the_next_query_is_answered(daemon, data):
     for name in CHANNELS:
         for _ in range(30):
             send(daemon, name, rng.randbytes(rng.randrange(0, 1200)))
-            count += 1
+            count += name not in SNAPSHOTS  # of those only the newest may be looked at
             daemon.bus.spin(0.002)
-    assert daemon.wait(lambda: daemon.status.num_rejected >= before + count)
+    assert daemon.wait(lambda: daemon.status.num_rejected >= before + count + len(SNAPSHOTS))
     now = daemon.fresh_status()
     assert (now.map_id, now.map_revision, now.vehicle_revision) == (held.map_id, held.map_revision, held.vehicle_revision)
     assert " OK " in daemon.aisle("query", "--scenario", path)

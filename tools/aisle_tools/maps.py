@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from aisle import status_t
 
 from aisle_tools import layouts, movingai, rosmap
+from aisle_tools.acknowledge import send_until_held
 from aisle_tools.bus import Bus, LogWriter, StatusWatch, now_us, time_revision
 from aisle_tools.errors import UserError
-from aisle_tools.names import HINTS, cause_name
 from aisle_tools.scenario import Scenario, read_scenario
 from aisle_tools.world import World
-
-RESEND = 1.0  # s without acknowledgement until everything is sent again
-REFUSALS = (
-    status_t.MAP_MISMATCH,
-    status_t.REVISION_GAP,
-    status_t.OUTDATED,
-    status_t.CONFLICT,
-    status_t.MALFORMED,
-    status_t.LIMIT,
-)
 
 
 def read_any(path: Path, args: argparse.Namespace, margin: float = 0.0) -> tuple[World, Scenario | None]:
@@ -108,42 +97,13 @@ def send(world: World, args: argparse.Namespace, map_id: int) -> None:
         if before.map_id == map_id:
             revision = max(revision, before.map_revision + 1)
     messages = layouts.make_messages(world, map_id, revision, now_us(), args.tile)
-    _send_until_held(bus, status, messages, map_id, revision, args.timeout)
-    print(f"{describe(world)}: map {map_id} revision {revision} in force, {len(messages)} messages")
 
-
-def _send_until_held(bus: Bus, status: StatusWatch, messages: list, map_id: int, revision: int, timeout: float) -> None:
-    def held() -> bool:
-        s = status.last
-        return s is not None and s.map_id == map_id and s.map_revision == revision
-
-    def refused() -> bool:
-        s = status.last
-        return s is not None and s.boot_id == before.boot_id and s.num_rejected > before.num_rejected
-
-    status.drain()
-    before = status.wait(timeout)
-    for attempt in range(max(1, int(timeout / RESEND))):
-        if attempt > 0:
-            print("aisle: not acknowledged yet, sending again", file=sys.stderr)
+    def publish() -> None:
         for name, msg in messages:
             bus.publish(name, msg)
-        bus.spin(RESEND if attempt == 0 else 2.0 * RESEND, lambda: held() or refused())
-        if held():
-            return
-        if refused() and status.last is not None and status.last.cause in REFUSALS:
-            raise UserError(refusal_text("map", status.last))
-    last = status.wait(timeout)
-    raise UserError(
-        f"map {map_id} revision {revision} was not taken within {timeout:g} s: the daemon holds map {last.map_id} "
-        f"revision {last.map_revision}, cause {cause_name(last.cause)}"
-    )
 
+    def is_held(s: status_t) -> bool:
+        return s.map_id == map_id and s.map_revision == revision
 
-def refusal_text(what: str, status: status_t) -> str:
-    text = f"{what} refused by the daemon: {cause_name(status.cause)}"
-    if status.cause_id != 0:
-        text += f", {'limit' if status.cause == status_t.LIMIT else 'id'} {status.cause_id}"
-    if status.cause in HINTS:
-        text += f" ({HINTS[status.cause]})"
-    return text
+    send_until_held(bus, status, publish, is_held, f"map {map_id} revision {revision}", args.timeout)
+    print(f"{describe(world)}: map {map_id} revision {revision} in force, {len(messages)} messages")

@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from aisle import vehicle_t
+from aisle import status_t, vehicle_t
 
 from aisle_tools import vehicle
+from aisle_tools.acknowledge import send_until_held
 from aisle_tools.bus import Bus, LogWriter, StatusWatch, now_us, time_revision
 from aisle_tools.errors import UserError
-from aisle_tools.maps import REFUSALS, refusal_text
-from aisle_tools.names import cause_name
 from aisle_tools.scenario import read_scenario
 
 
@@ -56,21 +55,8 @@ def send(bus: Bus, msg: vehicle_t, timeout: float, fixed_revision: bool = False)
     if not fixed_revision and before.vehicle_revision >= msg.vehicle_revision:
         msg.vehicle_revision = before.vehicle_revision + 1
 
-    def held() -> bool:
-        return status.last is not None and status.last.vehicle_revision == msg.vehicle_revision
+    def is_held(s: status_t) -> bool:
+        return s.vehicle_revision == msg.vehicle_revision
 
-    def refused() -> bool:
-        return status.last is not None and status.last.num_rejected > before.num_rejected
-
-    for _ in range(max(1, int(timeout))):
-        bus.publish("VEHICLE", msg)
-        bus.spin(1.0, lambda: held() or refused())
-        if held():
-            return
-        if refused() and status.last is not None and status.last.cause in REFUSALS:
-            raise UserError(refusal_text("vehicle", status.last))
-    last = status.wait(timeout)
-    raise UserError(
-        f"vehicle revision {msg.vehicle_revision} was not taken within {timeout:g} s: "
-        f"the daemon holds {last.vehicle_revision}, cause {cause_name(last.cause)}"
-    )
+    what = f"vehicle revision {msg.vehicle_revision}"
+    send_until_held(bus, status, lambda: bus.publish("VEHICLE", msg), is_held, what, timeout)
