@@ -37,7 +37,7 @@ extern "C" {
 #define AISLE_PROTOCOL 1             // status_msg.protocol
 #define AISLE_LEASE_US 1000000       // a path is valid this long after each sending
 #define AISLE_LEASE_RESEND_US 500000 // and sent again this often
-#define AISLE_WORK_UNITS_DEFAULT 2000000
+#define AISLE_WORK_UNITS_DEFAULT 5000000
 
 typedef struct aisle_planner aisle_planner; // lies inside the caller's block
 

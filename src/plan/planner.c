@@ -1,9 +1,13 @@
 #include "plan/planner_state.h"
 
 #include "base/check.h"
+#include "robot/profile.h"
 
+#include <float.h>
 #include <stddef.h>
 #include <string.h>
+
+#define HEADING_MAX 1e4 // rad of a stop's heading; also of its tolerances, in their units
 
 // ---- memory
 
@@ -101,7 +105,6 @@ aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *c
     self->has_vehicle = config->has_vehicle;
     self->vehicle = vehicle;
     *self->vehicle_msg = config->vehicle;
-    self->vehicle_msg->utime = 0; // the settings' vehicle gives way to any message
     self->route->budget_default = config->work_units > 0 ? (uint32_t)config->work_units : AISLE_WORK_UNITS_DEFAULT;
     *planner = self;
     return AISLE_OK;
@@ -116,12 +119,59 @@ size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, s
 
 // ---- requests in turn
 
-static bool bad_numbers(const aisle_request *request) {
-    return request->num_goals < 1 || request->start.tolerance_theta < 0.0F;
+// Is x in [lo, hi]? Not if it is no number.
+static bool within(double x, double lo, double hi) {
+    return x >= lo && x <= hi;
 }
 
-// Why a request cannot even begin; cause 0: it can.
-static aisle_refusal obstacle_to(const aisle_planner *self, const aisle_request *request) {
+static bool stop_is_bad(const aisle_goal_msg *stop) {
+    return !within(stop->theta, -HEADING_MAX, HEADING_MAX) || !within((double)stop->tolerance_xy, 0.0, HEADING_MAX) ||
+           !within((double)stop->tolerance_theta, 0.0, HEADING_MAX) ||
+           !within((double)stop->dwell, 0.0, AISLE_PROFILE_DURATION_MAX) || !within(stop->x, -DBL_MAX, DBL_MAX) ||
+           !within(stop->y, -DBL_MAX, DBL_MAX);
+}
+
+// Numbers no vehicle can mean: the goal's id, 0 for the start or their count.
+static bool is_malformed(const aisle_request *request, int32_t *id) {
+    *id = 0;
+    if (request->num_goals < 1 || stop_is_bad(&request->start)) {
+        return true;
+    }
+    for (int16_t i = 0; i < request->num_goals; i++) {
+        if (stop_is_bad(&request->goals[i])) {
+            *id = request->goals[i].id;
+            return true;
+        }
+    }
+    return false;
+}
+
+// What keeps anyone from driving by the pose at hand, its age left out.
+static aisle_refusal pose_hindrance(const aisle_planner *self) {
+    if (!self->has_pose) {
+        return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
+    }
+    if (self->pose.localized == 0) {
+        return (aisle_refusal){AISLE_STATUS_NOT_LOCALIZED, self->pose.seq, 0.0F};
+    }
+    if (self->pose.map_id != 0 && self->pose.map_id != aisle_layout_map_id(self->layout)) {
+        return (aisle_refusal){AISLE_STATUS_MAP_MISMATCH, self->pose.map_id, 0.0F};
+    }
+    return (aisle_refusal){0, 0, 0.0F};
+}
+
+static bool obstacle_present(const aisle_planner *self, int32_t *id) {
+    for (int i = 0; i < AISLE_OBSTACLES_MAX_SOURCES; i++) {
+        if (self->obstacle_id[i] != 0) {
+            *id = self->obstacle_id[i];
+            return true;
+        }
+    }
+    return false;
+}
+
+aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request) {
+    int32_t id = 0;
     if (!aisle_layout_is_in_force(self->layout)) {
         return (aisle_refusal){AISLE_STATUS_NO_LAYOUT, 0, 0.0F};
     }
@@ -131,16 +181,19 @@ static aisle_refusal obstacle_to(const aisle_planner *self, const aisle_request 
     if (request->map_id != 0 && request->map_id != aisle_layout_map_id(self->layout)) {
         return (aisle_refusal){AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_id(self->layout), 0.0F};
     }
-    if (bad_numbers(request)) {
-        return (aisle_refusal){AISLE_STATUS_MALFORMED, 0, (float)request->num_goals};
+    if (is_malformed(request, &id)) {
+        return (aisle_refusal){AISLE_STATUS_MALFORMED, id, (float)request->num_goals};
     }
-    if (!request->is_query && request->pose_utime == 0) {
+    if (request->is_query) {
+        return (aisle_refusal){0, 0, 0.0F};
+    }
+    if (request->pose_utime == 0) {
         return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
     }
-    if (!request->is_query && self->pose.localized == 0) {
-        return (aisle_refusal){AISLE_STATUS_NOT_LOCALIZED, self->pose.seq, 0.0F};
+    if (obstacle_present(self, &id)) {
+        return (aisle_refusal){AISLE_STATUS_BLOCKED_BY, id, 0.0F};
     }
-    return (aisle_refusal){0, 0, 0.0F};
+    return pose_hindrance(self);
 }
 
 static bool is_stale(const aisle_planner *self, const aisle_request *request) {
@@ -149,14 +202,12 @@ static bool is_stale(const aisle_planner *self, const aisle_request *request) {
                                   held->goal_list_revision != request->goal_list_revision);
 }
 
-static void begin_next(aisle_planner *self) {
-    const aisle_request *request = &self->queue[self->queue_head];
-    self->queue_head = (self->queue_head + 1U) % self->config.limits.requests;
-    self->queue_count--;
-    if (is_stale(self, request)) {
-        return; // cancelled or overtaken by a newer goal list
+static void begin(aisle_planner *self, const aisle_request *request) {
+    if (!request->is_query) {
+        self->mission.replan = false;
+        self->mission.cause = 0;
     }
-    aisle_refusal why = obstacle_to(self, request);
+    aisle_refusal why = aisle_planner_hindrance(self, request);
     if (why.cause != 0) {
         aisle_planner_refuse(self, request, &why, NULL, 0);
         self->counters[request->is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
@@ -171,6 +222,19 @@ static void begin_next(aisle_planner *self) {
     head->obstacles_utime = 0;
     aisle_route_start(self->route, self->layout, &self->vehicle, request, head);
     self->planning = true;
+}
+
+static void begin_next(aisle_planner *self) {
+    if (self->queue_count == 0U) {
+        begin(self, aisle_planner_renew_request(self));
+        return;
+    }
+    const aisle_request *request = &self->queue[self->queue_head];
+    self->queue_head = (self->queue_head + 1U) % self->config.limits.requests;
+    self->queue_count--;
+    if (!is_stale(self, request)) { // else cancelled or overtaken by a newer goal list
+        begin(self, request);
+    }
 }
 
 static void count_route(aisle_planner *self) {
@@ -195,8 +259,6 @@ static void end_route(aisle_planner *self) {
     count_route(self);
     const aisle_proof *answer = aisle_route_answer(route);
     if (answer == NULL) {
-        self->mission.cause = route->request.is_query ? self->mission.cause : route->cause.cause;
-        self->mission.cause_id = route->request.is_query ? self->mission.cause_id : route->cause.id;
         aisle_planner_refuse(self, &route->request, &route->cause, route->has_place ? &route->place : NULL,
                              route->spent);
     } else if (route->request.is_query || answer != &route->first || !route->announced) {
@@ -228,31 +290,24 @@ static void step_layout(aisle_planner *self, uint32_t units) {
 
 // ---- lease
 
-static bool obstacle_present(const aisle_planner *self, int32_t *id) {
-    for (int i = 0; i < AISLE_OBSTACLES_MAX_SOURCES; i++) {
-        if (self->obstacle_id[i] != 0) {
-            *id = self->obstacle_id[i];
-            return true;
-        }
-    }
-    return false;
-}
-
-// Why the mission's path is not renewed; 0: it is.
-static int16_t lease_obstacle(const aisle_planner *self, int32_t *id) {
+int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us, int32_t *id) {
     *id = 0;
     if (obstacle_present(self, id)) {
         return AISLE_STATUS_BLOCKED_BY;
     }
-    if (!aisle_planner_pose_is_fresh(self)) {
+    double timeout = self->has_vehicle ? self->vehicle.pose_timeout : 0.2;
+    if (!self->has_pose || (double)(now_us - self->pose_at_us) > timeout * 1e6) {
         return AISLE_STATUS_POSE_STALE;
     }
-    return self->pose.localized == 0 ? AISLE_STATUS_NOT_LOCALIZED : 0;
+    aisle_refusal why = pose_hindrance(self);
+    *id = why.id;
+    return why.cause;
 }
 
 static void renew_lease(aisle_planner *self) {
     int32_t id;
-    if (self->mission.has_path && !self->held && self->now_us >= self->lease_due_us && lease_obstacle(self, &id) == 0) {
+    if (self->mission.has_path && !self->held && self->now_us >= self->lease_due_us &&
+        aisle_planner_lease_hindrance(self, self->now_us, &id) == 0) {
         aisle_planner_renew(self);
     }
 }
@@ -274,7 +329,7 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
         step_layout(self, work_units);
     } else if (self->planning) {
         step_route(self, work_units);
-    } else if (self->queue_count > 0U) {
+    } else if (self->queue_count > 0U || self->mission.replan) {
         begin_next(self);
     }
     if (!events_wait(self)) {
@@ -298,7 +353,7 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
 
 int64_t aisle_planner_next_deadline(const aisle_planner *self) {
     int32_t id;
-    bool leased = self->mission.has_path && !self->held && lease_obstacle(self, &id) == 0;
+    bool leased = self->mission.has_path && !self->held && aisle_planner_lease_hindrance(self, self->now_us, &id) == 0;
     return leased ? self->lease_due_us : INT64_MAX;
 }
 
@@ -308,10 +363,10 @@ const int64_t *aisle_planner_counters(const aisle_planner *self) {
 
 // ---- status
 
-static int8_t state_of(const aisle_planner *self, int16_t *cause, int32_t *cause_id) {
+static int8_t state_of(const aisle_planner *self, int64_t now_us, int16_t *cause, int32_t *cause_id) {
     const aisle_mission *mission = &self->mission;
     *cause = self->cause;
-    *cause_id = self->cause_id;
+    *cause_id = self->cause != 0 ? self->cause_id : 0;
     if (!aisle_layout_is_in_force(self->layout) || !self->has_vehicle) {
         if (*cause == 0) {
             *cause = self->has_vehicle ? AISLE_STATUS_NO_LAYOUT : AISLE_STATUS_NO_VEHICLE;
@@ -321,14 +376,14 @@ static int8_t state_of(const aisle_planner *self, int16_t *cause, int32_t *cause
     if (self->held) {
         return AISLE_STATUS_HELD;
     }
-    if (self->planning && !mission->has_path) {
+    if (aisle_planner_is_busy(self) && !mission->has_path) {
         return AISLE_STATUS_PLANNING;
     }
     if (!mission->wanted) {
         return AISLE_STATUS_IDLE;
     }
-    int32_t id;
-    int16_t stopped = mission->has_path ? lease_obstacle(self, &id) : mission->cause;
+    int32_t id = 0;
+    int16_t stopped = mission->has_path ? aisle_planner_lease_hindrance(self, now_us, &id) : mission->cause;
     if (stopped != 0 || !mission->has_path) {
         *cause = stopped;
         *cause_id = mission->has_path ? id : mission->cause_id;
@@ -357,12 +412,13 @@ static void remaining(const aisle_planner *self, aisle_status_msg *status) {
     status->time_remaining = path->duration - path->waypoints[nearest].t;
 }
 
-static float age(const aisle_planner *self, bool known, int64_t since_us) {
-    return known ? (float)((double)(self->now_us - since_us) * 1e-6) : -1.0F;
+static float age(bool known, int64_t now_us, int64_t since_us) {
+    return known ? (float)((double)(now_us - since_us) * 1e-6) : -1.0F;
 }
 
 void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status) {
     const aisle_mission *mission = &self->mission;
+    int64_t now = now_us > self->now_us ? now_us : self->now_us;
     *status = (aisle_status_msg){.utime = now_us,
                                  .boot_id = self->config.boot_id,
                                  .protocol = AISLE_PROTOCOL,
@@ -371,10 +427,10 @@ void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_statu
                                  .vehicle_revision = self->has_vehicle ? self->vehicle.revision : 0,
                                  .path_revision = self->path_revision,
                                  .command_id = self->command_id,
-                                 .pose_age = age(self, self->has_pose, self->pose_at_us),
+                                 .pose_age = age(self->has_pose, now, self->pose_at_us),
                                  .obstacles_age = -1.0F,
                                  .num_rejected = (int32_t)self->counters[AISLE_COUNTER_REJECTED]};
-    status->state = state_of(self, &status->cause, &status->cause_id);
+    status->state = state_of(self, now, &status->cause, &status->cause_id);
     if (mission->wanted) {
         status->goal_list_id = mission->request.goal_list_id;
         status->goal_list_revision = mission->request.goal_list_revision;

@@ -31,6 +31,8 @@ void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, con
     if (kind == AISLE_EVENT_PATH) {
         self->path_revision++;
         self->mission.has_path = false;
+        self->mission.cause = why->cause;
+        self->mission.cause_id = why->id;
     }
     fill_head(self, request);
     aisle_path_msg *head = self->head;
@@ -73,11 +75,16 @@ void aisle_planner_publish(aisle_planner *self, const aisle_request *request, co
     mission->current.size = proof->size;
     mission->current.stamp = proof->stamp;
     mission->has_path = true;
-    mission->cause = 0;
+    mission->replan = false;
     aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, mission->path, NULL);
     AISLE_ASSERT(st == AISLE_OK);
     self->path_revision = mission->path->path_revision;
-    aisle_planner_renew(self);
+    int32_t id;
+    if (self->held || aisle_planner_lease_hindrance(self, self->now_us, &id) != 0) {
+        self->lease_due_us = self->now_us; // kept back until it may be driven
+    } else {
+        aisle_planner_renew(self);
+    }
 }
 
 void aisle_planner_renew(aisle_planner *self) {
@@ -92,6 +99,4 @@ void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id) {
         aisle_refusal why = {cause, id, 0.0F};
         aisle_planner_refuse(self, &self->mission.request, &why, NULL, 0);
     }
-    self->mission.cause = cause;
-    self->mission.cause_id = id;
 }

@@ -1,17 +1,12 @@
 #include "plan/planner_state.h"
 
-#include "base/check.h"
+#include "base/crc32.h"
 
 #include <math.h>
 #include <string.h>
 
 bool aisle_planner_is_busy(const aisle_planner *self) {
-    return self->planning || self->building || self->queue_count > 0;
-}
-
-bool aisle_planner_pose_is_fresh(const aisle_planner *self) {
-    double timeout = self->has_vehicle ? self->vehicle.pose_timeout : 0.2;
-    return self->has_pose && (double)(self->now_us - self->pose_at_us) <= timeout * 1e6;
+    return self->planning || self->building || self->queue_count > 0 || self->mission.replan;
 }
 
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id) {
@@ -82,11 +77,10 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
     if (aisle_planner_is_busy(self)) {
         return AISLE_BUSY;
     }
-    bool sent_before = self->has_vehicle && self->vehicle_msg->utime != 0; // 0: the settings' one
-    if (sent_before && msg->vehicle_revision < self->vehicle.revision) {
+    if (self->vehicle_sent && msg->vehicle_revision < self->vehicle.revision) {
         return aisle_planner_reject(self, AISLE_STATUS_OUTDATED, msg->vehicle_revision);
     }
-    if (sent_before && msg->vehicle_revision == self->vehicle.revision) {
+    if (self->vehicle_sent && msg->vehicle_revision == self->vehicle.revision) {
         return same_vehicle(msg, self->vehicle_msg)
                    ? duplicate(self)
                    : aisle_planner_reject(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
@@ -97,6 +91,7 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
     }
     *self->vehicle_msg = *msg;
     self->has_vehicle = true;
+    self->vehicle_sent = true;
     aisle_planner_revoke(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
     aisle_planner_replan(self);
     return AISLE_OK;
@@ -104,9 +99,15 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
 
 // ---- pose
 
+// Is the path in hand the one for the goals in hand?
+static bool drives_to_its_goals(const aisle_mission *mission) {
+    return mission->wanted && mission->has_path && mission->path->goal_list_id == mission->list_id &&
+           mission->path->goal_list_revision == mission->list_revision;
+}
+
 static void note_progress(aisle_planner *self) {
     aisle_mission *mission = &self->mission;
-    while (mission->wanted && mission->has_path && mission->reached < (uint32_t)mission->request.num_goals) {
+    while (drives_to_its_goals(mission) && mission->reached < (uint32_t)mission->request.num_goals) {
         const aisle_goal_msg *goal = &mission->request.goals[mission->reached];
         double away = aisle_vec2_distance(aisle_vec2_of(self->pose.x, self->pose.y), aisle_vec2_of(goal->x, goal->y));
         double tolerance = goal->tolerance_xy > 0.0F ? (double)goal->tolerance_xy : 0.05;
@@ -119,6 +120,20 @@ static void note_progress(aisle_planner *self) {
             mission->wanted = false;
             mission->has_path = false;
         }
+    }
+}
+
+// A mission refused for want of a pose is planned when there is one.
+static void try_refused_mission(aisle_planner *self) {
+    const aisle_mission *mission = &self->mission;
+    bool by_pose = mission->cause == AISLE_STATUS_NO_POSE || mission->cause == AISLE_STATUS_NOT_LOCALIZED ||
+                   mission->cause == AISLE_STATUS_MAP_MISMATCH;
+    if (!mission->wanted || mission->has_path || !by_pose || mission->replan) {
+        return;
+    }
+    const aisle_request *request = aisle_planner_renew_request(self);
+    if (aisle_planner_hindrance(self, request).cause != mission->cause) {
+        aisle_planner_replan(self);
     }
 }
 
@@ -136,6 +151,7 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
     self->pose_at_us = self->now_us;
     self->has_pose = true;
     note_progress(self);
+    try_refused_mission(self);
     return AISLE_OK;
 }
 
@@ -186,33 +202,32 @@ static aisle_goal_msg pose_as_start(const aisle_planner *self) {
     return (aisle_goal_msg){.x = self->pose.x, .y = self->pose.y, .theta = self->pose.theta};
 }
 
-static bool same_goals(const aisle_request *a, const aisle_request *b) {
-    uint8_t bytes[2][128];
-    size_t size[2] = {0, 0};
-    if (a->num_goals != b->num_goals || a->map_id != b->map_id) {
-        return false;
+static uint32_t digest_part(uint32_t crc, aisle_msg_type type, const void *part) {
+    uint8_t bytes[128];
+    size_t size = 0;
+    aisle_status st = aisle_msg_encode_body(type, part, bytes, sizeof bytes, &size);
+    return st == AISLE_OK ? aisle_crc32(crc, bytes, size) : ~crc; // not finite: refused when its turn comes
+}
+
+static uint32_t digest_of(const aisle_goal_list_msg *msg) {
+    uint32_t crc = digest_part(0, AISLE_MSG_OPTIONS, &msg->options);
+    for (int16_t i = 0; i < msg->num_goals; i++) {
+        crc = digest_part(crc, AISLE_MSG_GOAL, &msg->goals[i]);
     }
-    for (int16_t i = 0; i < a->num_goals; i++) {
-        if (aisle_msg_encode_body(AISLE_MSG_GOAL, &a->goals[i], bytes[0], sizeof bytes[0], &size[0]) != AISLE_OK ||
-            aisle_msg_encode_body(AISLE_MSG_GOAL, &b->goals[i], bytes[1], sizeof bytes[1], &size[1]) != AISLE_OK ||
-            size[0] != size[1] || memcmp(bytes[0], bytes[1], size[0]) != 0) {
-            return false;
-        }
-    }
-    return true;
+    const uint8_t rest[] = {(uint8_t)msg->num_goals, (uint8_t)msg->ordering};
+    crc = aisle_crc32(crc, rest, sizeof rest);
+    return crc ^ (uint32_t)msg->map_id;
 }
 
 static aisle_status cancel_mission(aisle_planner *self) {
     aisle_planner_revoke(self, 0, 0);
     self->mission.wanted = false;
     self->mission.has_path = false;
+    self->mission.replan = false;
     return AISLE_OK;
 }
 
-static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *msg) {
-    if (count_is_bad(msg->num_goals)) {
-        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->num_goals);
-    }
+static aisle_status begin_mission(aisle_planner *self, const aisle_goal_list_msg *msg) {
     aisle_request request = {.goal_list_id = msg->goal_list_id,
                              .goal_list_revision = msg->goal_list_revision,
                              .map_id = msg->map_id,
@@ -224,43 +239,58 @@ static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *m
     if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {
         order_goals(&request);
     }
-    const aisle_request *held = &self->mission.request;
-    if (self->mission.wanted && held->goal_list_id == msg->goal_list_id) {
-        if (msg->goal_list_revision < held->goal_list_revision) {
+    aisle_status st = enqueue(self, &request);
+    if (st == AISLE_OK) {
+        aisle_mission *mission = &self->mission;
+        mission->request = request;
+        mission->wanted = true;
+        mission->replan = false;
+        mission->reached = 0;
+        mission->cause = 0;
+    }
+    return st;
+}
+
+static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *msg) {
+    if (count_is_bad(msg->num_goals)) {
+        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->num_goals);
+    }
+    aisle_mission *mission = &self->mission;
+    uint32_t digest = digest_of(msg);
+    if (mission->known && mission->list_id == msg->goal_list_id) {
+        if (msg->goal_list_revision < mission->list_revision) {
             return aisle_planner_reject(self, AISLE_STATUS_OUTDATED, msg->goal_list_revision);
         }
-        if (msg->goal_list_revision == held->goal_list_revision) {
-            return same_goals(held, &request)
+        if (msg->goal_list_revision == mission->list_revision) {
+            return digest == mission->digest
                        ? duplicate(self)
                        : aisle_planner_reject(self, AISLE_STATUS_CONFLICT, msg->goal_list_revision);
         }
     }
-    if (msg->num_goals == 0) {
-        return cancel_mission(self);
-    }
-    aisle_status st = enqueue(self, &request);
+    aisle_status st = msg->num_goals == 0 ? cancel_mission(self) : begin_mission(self, msg);
     if (st == AISLE_OK) {
-        self->mission.request = request;
-        self->mission.wanted = true;
-        self->mission.reached = 0;
+        mission->known = true;
+        mission->list_id = msg->goal_list_id;
+        mission->list_revision = msg->goal_list_revision;
+        mission->digest = digest;
     }
     return st;
 }
 
 void aisle_planner_replan(aisle_planner *self) {
-    if (!self->mission.wanted) {
-        return;
-    }
-    aisle_request request = self->mission.request;
-    request.start = pose_as_start(self);
-    request.pose_utime = self->pose.utime;
-    int16_t left = (int16_t)(request.num_goals - (int16_t)self->mission.reached);
-    memmove(request.goals, request.goals + self->mission.reached, (size_t)left * sizeof request.goals[0]);
-    request.num_goals = left;
-    aisle_status st = enqueue(self, &request); // the queue is empty when a layout or vehicle takes effect
-    AISLE_ASSERT(st == AISLE_OK);
-    self->mission.request = request;
-    self->mission.reached = 0;
+    self->mission.replan = self->mission.wanted;
+}
+
+const aisle_request *aisle_planner_renew_request(aisle_planner *self) {
+    aisle_mission *mission = &self->mission;
+    aisle_request *request = &mission->request;
+    uint32_t left = (uint32_t)request->num_goals - mission->reached;
+    memmove(request->goals, request->goals + mission->reached, left * sizeof request->goals[0]);
+    request->num_goals = (int16_t)left;
+    request->start = pose_as_start(self);
+    request->pose_utime = self->has_pose ? self->pose.utime : 0;
+    mission->reached = 0;
+    return request;
 }
 
 // ---- obstacles and commands
@@ -275,6 +305,11 @@ static aisle_status take_obstacles(aisle_planner *self, const aisle_obstacles_ms
         int32_t id = msg->obstacles[0].id;
         self->obstacle_id[msg->source] = id != 0 ? id : -1;
         aisle_planner_revoke(self, AISLE_STATUS_BLOCKED_BY, id);
+    }
+    int32_t id;
+    if (self->mission.cause == AISLE_STATUS_BLOCKED_BY &&
+        aisle_planner_lease_hindrance(self, self->now_us, &id) != AISLE_STATUS_BLOCKED_BY) {
+        aisle_planner_replan(self);
     }
     return AISLE_OK;
 }

@@ -18,14 +18,18 @@ typedef struct aisle_outgoing { // a path_t waiting to be pulled
     bool waiting;
 } aisle_outgoing;
 
-typedef struct aisle_mission { // the goal list in hand
-    aisle_request request;
-    bool wanted;   // there is one, not yet reached or cancelled
-    bool has_path; // current holds its proved path
+typedef struct aisle_mission {      // the goal list in hand
+    aisle_request request;          // with the goals not yet reached when it was planned last
+    bool known;                     // a list has come; what names it stays when it is reached or cancelled
+    int32_t list_id, list_revision; // of the newest
+    uint32_t digest;                // of all in it but its utime: a duplicate or a conflict?
+    bool wanted;                    // neither reached nor cancelled yet
+    bool replan;                    // to be planned again from the present pose, after what waits
+    bool has_path;                  // current holds its proved path
     aisle_proof current;
     aisle_path_msg *path; // current, decoded
     uint32_t reached;     // goals
-    int16_t cause;        // why there is no path
+    int16_t cause;        // why the last plan gave no path, or the path was revoked; 0: being planned
     int32_t cause_id;
 } aisle_mission;
 
@@ -37,6 +41,7 @@ struct aisle_planner {
     aisle_vehicle vehicle;
     aisle_vehicle_msg *vehicle_msg; // as taken, to tell a duplicate from a conflict
     bool has_vehicle;
+    bool vehicle_sent; // by a message; the settings' one gives way to any
     aisle_pose_msg pose;
     int64_t pose_at_us; // when it was submitted
     bool has_pose;
@@ -61,24 +66,33 @@ struct aisle_planner {
     uint32_t row_count;
 };
 
+// planner.c
+
+// Why a request cannot even begin; cause 0: it can.
+aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request);
+// Why the mission's path must not be driven at now_us; 0: it may. *id: what is meant.
+int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us, int32_t *id);
+
 // planner_answer.c
 
 // Queues a path_t of status NONE; place may be NULL.
 void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
                           const aisle_vec2 *place, uint32_t work_units);
-// Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission.
+// Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission; one that must not be
+// driven now is kept back until its lease may begin.
 void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);
 // Queues the mission's path once more with its lease renewed.
 void aisle_planner_renew(aisle_planner *self);
-// Ends the mission's path: a revocation if one was out.
+// Ends the mission's path, if it has one.
 void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id);
 
 // planner_inputs.c
 
 bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
-bool aisle_planner_pose_is_fresh(const aisle_planner *self);
-// Puts the mission's goals into the queue again from the present pose.
+// Has the mission planned again, if there is one.
 void aisle_planner_replan(aisle_planner *self);
+// The mission's request as it is now: the goals left, from the present pose.
+const aisle_request *aisle_planner_renew_request(aisle_planner *self);
 // AISLE_ERR_DATA, with the cause kept for status().
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id);
 #endif

@@ -133,7 +133,7 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     return AISLE_BUSY;
 }
 
-static bool begin_leg(aisle_route *self, aisle_space_mode mode);
+static void begin_leg(aisle_route *self, uint32_t attempt);
 
 static aisle_status check(aisle_route *self) {
     const aisle_request *request = &self->request;
@@ -147,7 +147,7 @@ static aisle_status check(aisle_route *self) {
         st = check_stop(self, &request->goals[i], false);
     }
     if (st == AISLE_BUSY) {
-        (void)begin_leg(self, AISLE_SPACE_FREE_TURN);
+        begin_leg(self, 0);
     }
     return st;
 }
@@ -161,16 +161,31 @@ static void begin_why(aisle_route *self) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
-// Starts the seed of the leg under way; false: the body's way of standing (mode) finds no start, and the next was
-// tried.
-static bool begin_leg(aisle_route *self, aisle_space_mode mode) {
+// What the n-th attempt at a seed searches with. False: there is no such attempt.
+static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mode, uint32_t *stride) {
+    static const aisle_space_mode modes[] = {AISLE_SPACE_FREE_TURN, AISLE_SPACE_FREE_TURN, AISLE_SPACE_ALONG,
+                                             AISLE_SPACE_ALONG};
+    uint32_t attempts = aisle_vehicle_is_disc(self->vehicle) ? 2U : 4U;
+    if (n >= attempts) {
+        return false;
+    }
+    double cells = floor(AISLE_ROUTE_STRIDE / aisle_layout_grid(self->layout)->lattice.res + 1e-6);
+    bool coarse = n % 2U == 0U && cells >= 2.0;
+    *mode = modes[n];
+    *stride = coarse ? (uint32_t)cells : 1U;
+    return true;
+}
+
+// Would the attempt only repeat another one?
+static bool attempt_is_idle(const aisle_route *self, uint32_t n, uint32_t stride) {
+    bool fine_first = n == 0U && aisle_objective_is_length(&self->objective);
+    return n % 2U == 0U && (stride == 1U || fine_first);
+}
+
+// Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
+static void begin_leg(aisle_route *self, uint32_t n) {
     aisle_leg *leg = &self->legs[self->leg];
-    leg->first = self->point_count;
-    leg->count = 0;
-    leg->via_count = 0;
-    leg->use_swarm = false;
-    leg->mode = mode;
-    leg->seed_value = leg->swarm_value = -1.0;
+    *leg = (aisle_leg){.first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0};
     aisle_vec2 from = place_of(leg_start(self, self->leg));
     aisle_vec2 to = place_of(&self->request.goals[self->leg]);
     self->stage = AISLE_ROUTE_SEED;
@@ -178,18 +193,21 @@ static bool begin_leg(aisle_route *self, aisle_space_mode mode) {
         leg->count = 1;
         self->points[self->point_count++] = from;
         self->seed.phase = AISLE_SEED_DONE;
-        return true;
+        return;
     }
-    aisle_space_begin(&self->space, self->layout, self->vehicle, mode);
-    if (aisle_seed_start(&self->seed, &self->space, &self->objective, from, to, self->points + leg->first) ==
-        AISLE_OK) {
-        return true;
-    }
-    if (mode == AISLE_SPACE_FREE_TURN && !aisle_vehicle_is_disc(self->vehicle)) {
-        return begin_leg(self, AISLE_SPACE_ALONG); // depth 2: ALONG does not come here
+    uint32_t stride;
+    for (; attempt_of(self, n, &leg->mode, &stride); n++) {
+        if (attempt_is_idle(self, n, stride)) {
+            continue;
+        }
+        leg->attempt = n;
+        aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
+        if (aisle_seed_start(&self->seed, &self->space, &self->objective, stride, from, to,
+                             self->points + leg->first) == AISLE_OK) {
+            return;
+        }
     }
     begin_why(self);
-    return false;
 }
 
 static void begin_build(aisle_route *self, aisle_proof *trial) {
@@ -202,7 +220,7 @@ static void begin_build(aisle_route *self, aisle_proof *trial) {
 static void next_leg(aisle_route *self) {
     self->leg++;
     if (self->leg < (uint32_t)self->request.num_goals) {
-        (void)begin_leg(self, AISLE_SPACE_FREE_TURN);
+        begin_leg(self, 0);
     } else {
         begin_build(self, &self->first);
     }
@@ -224,11 +242,7 @@ static aisle_status step_seed(aisle_route *self, uint32_t units) {
         return refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
     }
     if (st == AISLE_PARTIAL) {
-        if (leg->mode == AISLE_SPACE_FREE_TURN && !aisle_vehicle_is_disc(self->vehicle)) {
-            (void)begin_leg(self, AISLE_SPACE_ALONG);
-        } else {
-            begin_why(self);
-        }
+        begin_leg(self, leg->attempt + 1U);
     } else if (st == AISLE_OK) {
         double arc = self->vehicle->outer_radius + self->vehicle->margin;
         aisle_taut_start(&self->taut, &self->space, &self->objective, arc, self->points + leg->first,

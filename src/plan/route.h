@@ -5,6 +5,9 @@
 // legs - END. WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm
 // begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
+// Attempts at a seed, until one finds a way: the turning disc, then the exact body along the motion (not for discs), each first with
+// AISLE_ROUTE_STRIDE between search cells, then with every cell. For pure length the disc starts with every cell: a narrow
+// passage is worth more there.
 // Budget: work units of everything together; spent before a first proof: cause BUDGET; spent later: the first path is
 // the answer. If the verifier turns the seed path down it is built again with stops in all corners; if that fails too,
 // the cause is KINEMATIC (a way for the body exists, the turns it needs were not proved) or VERIFY_FAILED. Memory: from
@@ -22,6 +25,7 @@
 #include "wire/codec.h"
 
 #define AISLE_ROUTE_POINTS 2048U // of all legs' seed polylines
+#define AISLE_ROUTE_STRIDE 0.1   // m
 #define AISLE_ROUTE_BYTES 60000U // of an encoded path_t: 54 a waypoint and the head
 
 typedef struct aisle_request { // a query, or a goal list with the pose it starts from

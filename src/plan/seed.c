@@ -11,6 +11,18 @@ void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *
     self->factor = (uint16_t *)aisle_arena_take(arena, AISLE_SEED_TABLE, sizeof(uint16_t));
 }
 
+// The grid cell a search cell stands for: the middle one of its block, so that every search cell has one.
+static uint32_t grid_cell(const aisle_seed *self, uint32_t at) {
+    uint32_t w = self->search.cfg.w;
+    uint32_t ix = (at % w) * self->stride + self->stride / 2U;
+    uint32_t iy = (at / w) * self->stride + self->stride / 2U;
+    return iy * self->space->grid->lattice.w + ix;
+}
+
+static double step_length(const aisle_seed *self) {
+    return self->stride * self->space->grid->lattice.res;
+}
+
 static uint16_t factor_at(const aisle_seed *self, uint32_t field) {
     double clearance =
         (sqrt((double)field) - 0.5) * self->space->grid->lattice.res - self->space->vehicle->inner_radius;
@@ -33,23 +45,25 @@ static uint32_t enter_free_turn(void *ctx, uint32_t from, uint32_t to, uint8_t d
     aisle_seed *self = (aisle_seed *)ctx;
     (void)from;
     (void)dir;
-    if (!aisle_space_cell_free(self->space, to, &self->units)) {
+    uint32_t cell = grid_cell(self, to);
+    if (!aisle_space_cell_free(self->space, cell, step_length(self), &self->units)) {
         return AISLE_ASTAR_BARRED_CELL;
     }
-    return factor_of(self, to);
+    return factor_of(self, cell);
 }
 
 static uint32_t enter_along(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
     aisle_seed *self = (aisle_seed *)ctx;
     (void)dir;
     const aisle_grid *grid = self->space->grid;
+    uint32_t cell = grid_cell(self, to);
     double half_diagonal = 0.70710678118654752;
-    if ((sqrt((double)grid->field[to]) + half_diagonal) * grid->lattice.res < self->space->reach) {
+    if ((sqrt((double)grid->field[cell]) + half_diagonal) * grid->lattice.res < self->space->reach) {
         return AISLE_ASTAR_BARRED_CELL;
     }
-    aisle_vec2 a = aisle_lattice_centre(&grid->lattice, from);
-    aisle_vec2 b = aisle_lattice_centre(&grid->lattice, to);
-    return aisle_space_sweep_free(self->space, a, b, &self->units) ? factor_of(self, to) : AISLE_ASTAR_BARRED;
+    aisle_vec2 a = aisle_lattice_centre(&grid->lattice, grid_cell(self, from));
+    aisle_vec2 b = aisle_lattice_centre(&grid->lattice, cell);
+    return aisle_space_sweep_free(self->space, a, b, &self->units) ? factor_of(self, cell) : AISLE_ASTAR_BARRED;
 }
 
 static uint32_t enter_width(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
@@ -68,42 +82,71 @@ static uint32_t enter_proof(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
 }
 
 static bool may_stand(aisle_seed *self, uint32_t cell) {
-    return self->space->mode == AISLE_SPACE_ALONG || aisle_space_cell_free(self->space, cell, &self->units);
+    return self->space->mode == AISLE_SPACE_ALONG ||
+           aisle_space_cell_free(self->space, cell, step_length(self), &self->units);
 }
 
-// Nearest cell centre around p that is free and that p reaches straight. Ties: the first in row order.
-static bool join(aisle_seed *self, aisle_vec2 p, bool outbound, uint32_t *cell) {
+typedef struct joint {
+    aisle_vec2 p;  // the station
+    bool outbound; // driven from it
+    int32_t x, y;  // search cell it lies in
+    uint32_t cell; // the best so far
+    double away;   // m, of it
+} joint;
+
+static void try_joint(aisle_seed *self, const aisle_astar_config *cfg, joint *j, int32_t x, int32_t y) {
+    if (x < 0 || y < 0 || x >= (int32_t)cfg->w || y >= (int32_t)cfg->h) {
+        return;
+    }
+    uint32_t at = (uint32_t)y * cfg->w + (uint32_t)x;
+    uint32_t cell = grid_cell(self, at);
+    aisle_vec2 centre = aisle_lattice_centre(&self->space->grid->lattice, cell);
+    double away = aisle_vec2_distance(j->p, centre);
+    if (away >= j->away || !may_stand(self, cell)) {
+        return;
+    }
+    aisle_vec2 from = j->outbound ? j->p : centre;
+    aisle_vec2 to = j->outbound ? centre : j->p;
+    if (away < 1e-9 || aisle_space_body_sweep_free(self->space, from, to, &self->units)) {
+        j->away = away;
+        j->cell = at;
+    }
+}
+
+// Nearest search cell that is free and that the footprint reaches straight; square rings outward until one holds some.
+static bool join(aisle_seed *self, const aisle_astar_config *cfg, aisle_vec2 p, bool outbound, uint32_t *cell) {
     const aisle_lattice *lattice = &self->space->grid->lattice;
-    bool inside;
-    uint32_t home = aisle_lattice_cell(lattice, p, &inside);
-    int32_t hx = (int32_t)(home % lattice->w);
-    int32_t hy = (int32_t)(home / lattice->w);
-    double best = 1e9; // m, beyond any window
-    for (int32_t y = hy - AISLE_SEED_JOIN; y <= hy + AISLE_SEED_JOIN; y++) {
-        for (int32_t x = hx - AISLE_SEED_JOIN; x <= hx + AISLE_SEED_JOIN; x++) {
-            if (x < 0 || y < 0 || x >= (int32_t)lattice->w || y >= (int32_t)lattice->h) {
-                continue;
-            }
-            uint32_t at = (uint32_t)y * lattice->w + (uint32_t)x;
-            aisle_vec2 centre = aisle_lattice_centre(lattice, at);
-            double away = aisle_vec2_distance(p, centre);
-            if (away < best && may_stand(self, at) &&
-                aisle_space_sweep_free(self->space, outbound ? p : centre, outbound ? centre : p, &self->units)) {
-                best = away;
-                *cell = at;
-            }
+    double nowhere = 2.0 * AISLE_SEED_JOIN;
+    joint j = {.p = p, .outbound = outbound, .away = nowhere};
+    j.x = (int32_t)floor((p.x - lattice->x0) / step_length(self));
+    j.y = (int32_t)floor((p.y - lattice->y0) / step_length(self));
+    int32_t rings = (int32_t)(AISLE_SEED_JOIN / step_length(self)) + 1;
+    for (int32_t r = 0; r <= rings && j.away >= nowhere; r++) {
+        for (int32_t k = -r; k <= r; k++) {
+            try_joint(self, cfg, &j, j.x + k, j.y - r);
+            try_joint(self, cfg, &j, j.x + k, j.y + r);
+            try_joint(self, cfg, &j, j.x - r, j.y + k);
+            try_joint(self, cfg, &j, j.x + r, j.y + k);
         }
     }
-    return best < 1e9;
+    *cell = j.cell;
+    return j.away < nowhere;
 }
 
 static aisle_astar_config search_config(aisle_seed *self, aisle_astar_enter_fn enter) {
     const aisle_lattice *lattice = &self->space->grid->lattice;
-    return (aisle_astar_config){.enter = enter, .ctx = self, .w = lattice->w, .h = lattice->h};
+    uint32_t k = self->stride; // columns are those whose middle cell the grid has
+    return (aisle_astar_config){.enter = enter,
+                                .ctx = self,
+                                .w = (lattice->w - 1U - k / 2U) / k + 1U,
+                                .h = (lattice->h - 1U - k / 2U) / k + 1U};
 }
 
-aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, aisle_vec2 start,
-                              aisle_vec2 goal, aisle_vec2 *points) {
+aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, uint32_t stride,
+                              aisle_vec2 start, aisle_vec2 goal, aisle_vec2 *points) {
+    AISLE_ASSERT(stride >= 1U);
+    uint32_t least = space->grid->lattice.w < space->grid->lattice.h ? space->grid->lattice.w : space->grid->lattice.h;
+    self->stride = stride <= least ? stride : least;
     self->space = space;
     self->objective = objective;
     self->start = start;
@@ -114,7 +157,8 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
     self->for_refusal = false;
     tabulate(self);
     aisle_astar_config cfg = search_config(self, space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along);
-    if (!join(self, start, true, &cfg.start) || !join(self, goal, false, &cfg.goal)) {
+    self->search.cfg.w = cfg.w; // grid_cell() needs it before the search has begun
+    if (!join(self, &cfg, start, true, &cfg.start) || !join(self, &cfg, goal, false, &cfg.goal)) {
         self->phase = AISLE_SEED_IDLE;
         return AISLE_PARTIAL;
     }
@@ -211,6 +255,9 @@ static aisle_status begin_straightening(aisle_seed *self) {
     if (st != AISLE_OK) {
         return st;
     }
+    for (uint32_t i = 0; i < self->cell_count; i++) {
+        self->cells[i] = grid_cell(self, self->cells[i]);
+    }
     self->at = 0;
     self->points[0] = self->start;
     self->point_count = 1;
@@ -241,6 +288,7 @@ static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 s
                               aisle_astar_enter_fn enter) {
     self->space = space;
     self->for_refusal = true;
+    self->stride = 1;
     self->units = 0;
     self->phase = AISLE_SEED_SEARCH;
     aisle_astar_config cfg = search_config(self, enter);

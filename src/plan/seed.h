@@ -3,8 +3,10 @@
 // Search: A* over the planning grid (algo/astar.h), the cost of a cell being the objective's density at its clearance,
 // so that the homotopy class already suits the objective. FREE_TURN bars cells where the turning disc does not fit
 // (exactly, where the field leaves a doubt); ALONG bars moves the footprint cannot make with its heading along them.
-// Ends: start and goal are joined to the nearest free cell centre within AISLE_SEED_JOIN cells that a straight free way
-// leads to.
+// Stride: the search may look at every k-th cell only. A passage at least a stride wider than the vehicle is never lost
+// by that; the caller tries stride 1 when a larger one finds nothing.
+// Ends: start and goal are joined to the nearest free cell centre that the exact footprint reaches straight, heading
+// along the way, within AISLE_SEED_JOIN m: a station may be too tight to turn in.
 // Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping,
 // then halving) at no higher cost than the cells' own way.
 //
@@ -22,7 +24,7 @@
 
 #define AISLE_SEED_CELLS_MAX 65536U // cells of a path
 #define AISLE_SEED_POINTS_MAX 256U  // points of a leg's polyline
-#define AISLE_SEED_JOIN 4           // cells
+#define AISLE_SEED_JOIN 1.5         // m
 #define AISLE_SEED_TABLE 16384U     // field values with a tabulated factor
 
 typedef enum aisle_seed_phase {
@@ -37,6 +39,7 @@ typedef struct aisle_seed {
     const aisle_objective *objective;
     aisle_astar search;
     aisle_vec2 start, goal;
+    uint32_t stride; // cells between neighbours of the search
     uint32_t *cells; // [AISLE_SEED_CELLS_MAX]
     uint32_t cell_count, at;
     uint16_t *factor;   // [AISLE_SEED_TABLE] by field value
@@ -51,10 +54,10 @@ typedef struct aisle_seed {
 
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits);
 
-// Begins the search of a leg. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined (nothing
-// begun).
-aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, aisle_vec2 start,
-                              aisle_vec2 goal, aisle_vec2 *points);
+// Begins the search of a leg; stride >= 1. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined
+// (nothing begun).
+aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, uint32_t stride,
+                              aisle_vec2 start, aisle_vec2 goal, aisle_vec2 *points);
 
 // AISLE_BUSY; AISLE_OK: points[0..point_count) lead from start to goal; AISLE_PARTIAL: the grid has no way;
 // AISLE_ERR_CAPACITY: the open list, the path or the polyline is full. Spends about `units`, adds what it spent to

@@ -62,9 +62,9 @@ static bool capsule_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, do
     return aisle_layout_gap(self->layout, &capsule, self->grid->lattice.res, NULL) > 0.0;
 }
 
-bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units) {
+bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32_t *units) {
     double res = self->grid->lattice.res;
-    double need = sqrt(self->reach * self->reach + 0.5 * res * res);
+    double need = sqrt(self->reach * self->reach + 0.5 * step * step);
     double centre_gap = sqrt((double)self->grid->field[cell]) * res;
     double half_diagonal = res * HALF_DIAGONAL;
     if (centre_gap - half_diagonal >= need) {
@@ -166,17 +166,17 @@ static double free_ahead(const aisle_space *self, const sweep *way, double s) {
     return 0.0;
 }
 
-static bool piece_free(const aisle_space *self, const sweep *way, double s0, double s1) {
+static bool piece_free(const aisle_space *self, const sweep *way, double s0, double s1, aisle_space_mode mode) {
     aisle_vec2 p0 = aisle_vec2_add(way->a, aisle_vec2_scale(way->heading, s0));
     aisle_vec2 p1 = s1 >= way->length ? way->b : aisle_vec2_add(way->a, aisle_vec2_scale(way->heading, s1));
-    if (self->mode == AISLE_SPACE_FREE_TURN) {
+    if (mode == AISLE_SPACE_FREE_TURN) {
         return capsule_free(self, p0, p1, self->reach);
     }
     return discs_free(self, aisle_vec2_lerp(p0, p1, 0.5), way->heading, 0.5 * (s1 - s0)) ||
            body_free(self, p0, p1, way->theta);
 }
 
-bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units) {
+static bool sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, aisle_space_mode mode, uint32_t *units) {
     aisle_vec2 way_to = aisle_vec2_sub(b, a);
     sweep way = {a, b, {1.0, 0.0}, aisle_vec2_length(way_to), 0.0};
     if (way.length > 1e-9) {
@@ -190,7 +190,7 @@ bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b,
         double ahead = free_ahead(self, &way, s);
         if (ahead < least) {
             ahead = aisle_min(AISLE_SPACE_PIECE, way.length - s);
-            if (!piece_free(self, &way, s, s + ahead)) {
+            if (!piece_free(self, &way, s, s + ahead, mode)) {
                 return false;
             }
             ahead = aisle_max(ahead, least);
@@ -198,6 +198,14 @@ bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b,
         s += ahead;
     } while (s < way.length);
     return true;
+}
+
+bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units) {
+    return sweep_free(self, a, b, self->mode, units);
+}
+
+bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units) {
+    return aisle_vec2_distance(a, b) > 1e-9 && sweep_free(self, a, b, AISLE_SPACE_ALONG, units);
 }
 
 double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, int32_t *id) {

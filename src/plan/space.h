@@ -39,9 +39,13 @@ void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells);
 void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        aisle_space_mode mode);
 
-// FREE_TURN: may the disc stand in the cell's centre so that every step to a neighbour that also may is free? (Both
-// ends at least sqrt(reach^2 + res^2 / 2) from a point keep the segment at least reach from it.) Remembered.
-bool aisle_space_cell_free(aisle_space *self, uint32_t cell, uint32_t *units);
+// FREE_TURN: may the disc stand in the cell's centre so that every move of `step` (m, straight; diagonal sqrt(2) of it) to
+// another such centre is free? (Both ends at least sqrt(reach^2 + step^2 / 2) from a point keep the segment at least
+// reach from it.) Remembered: within one begin() step must not grow.
+bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32_t *units);
+
+// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b: false.
+bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap: "no" is a
 // proof; "yes" may be wrong by 1 / 64 of a cell. Adds its units.

@@ -60,8 +60,8 @@ static void test_a_cell_is_free_just_where_the_disc_has_its_margin_and_the_steps
         for (uint32_t cell = 0; cell < lattice->w * lattice->h; cell++) {
             aisle_vec2 c = aisle_lattice_centre(lattice, cell);
             double gap = (double)hall_disc_gap(c.x, c.y, 0.0);
-            bool free = aisle_space_cell_free(&space, cell, &units);
-            TEST_ASSERT_EQUAL(free, aisle_space_cell_free(&space, cell, &units)); // remembered
+            bool free = aisle_space_cell_free(&space, cell, lattice->res, &units);
+            TEST_ASSERT_EQUAL(free, aisle_space_cell_free(&space, cell, lattice->res, &units)); // remembered
             TEST_ASSERT_FALSE(free && gap < need - 1e-9);
             TEST_ASSERT_FALSE(!free && gap > need + 1e-9);
             free_cells += free;
