@@ -25,7 +25,7 @@
 // ---- world
 
 typedef struct area { // an obstacle as the judge knows it
-    long double v[16][2];
+    long double v[16][2], box[4];
     int n;
 } area;
 
@@ -57,6 +57,17 @@ UNUSED_OK void world_begin(double x_min, double y_min, double x_max, double y_ma
     world_bits = NULL;
 }
 
+static void limits_of(long double (*v)[2], int n, long double *box) {
+    box[0] = box[2] = v[0][0];
+    box[1] = box[3] = v[0][1];
+    for (int i = 1; i < n; i++) {
+        box[0] = fminl(box[0], v[i][0]);
+        box[1] = fminl(box[1], v[i][1]);
+        box[2] = fmaxl(box[2], v[i][0]);
+        box[3] = fmaxl(box[3], v[i][1]);
+    }
+}
+
 static void judge_learns(int n, double (*v)[2]) {
     TEST_ASSERT_LESS_THAN(SPOTS, world_count);
     area *a = &world_areas[world_count++];
@@ -65,6 +76,7 @@ static void judge_learns(int n, double (*v)[2]) {
         a->v[i][0] = (long double)v[i][0];
         a->v[i][1] = (long double)v[i][1];
     }
+    limits_of(a->v, n, a->box);
 }
 
 // Adds a polygon and returns its id.
@@ -95,17 +107,16 @@ UNUSED_OK void world_scan(uint32_t w, uint32_t h) {
     world_bits = calloc((size_t)w * h, 1);
 }
 
-UNUSED_OK void world_cell(uint32_t ix, uint32_t iy) {
-    TEST_ASSERT_TRUE(world_bits != NULL && ix < world_w && iy < world_h);
-    if (world_bits[iy * world_w + ix] != 0) {
-        return;
+// Occupies w x h cells.
+UNUSED_OK void world_cells(uint32_t ix, uint32_t iy, uint32_t w, uint32_t h) {
+    TEST_ASSERT_TRUE(world_bits != NULL && ix + w <= world_w && iy + h <= world_h);
+    for (uint32_t i = 0; i < w * h; i++) {
+        world_bits[(iy + i / w) * world_w + ix + i % w] = 1;
     }
-    world_bits[iy * world_w + ix] = 1;
-    double x = world_bounds[0] + world_res * ix, y = world_bounds[1] + world_res * iy;
-    double v[4][2] = {{x, y}, {x + world_res, y}, {x + world_res, y + world_res}, {x, y + world_res}};
-    if (world_count < SPOTS - 1) {
-        judge_learns(4, v);
-    }
+    double x0 = world_bounds[0] + world_res * ix, x1 = world_bounds[0] + world_res * (ix + w);
+    double y0 = world_bounds[1] + world_res * iy, y1 = world_bounds[1] + world_res * (iy + h);
+    double v[4][2] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+    judge_learns(4, v);
 }
 
 static void send_tile(uint32_t y0, uint32_t rows, int16_t part, int16_t parts) {
@@ -446,13 +457,14 @@ UNUSED_OK aisle_verify_fault verified(void) {
 
 // ---- the judge
 
-static long double point_to_segment(const long double *p, const long double *a, const long double *b) {
-    long double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
-    long double t = square > 0.0L ? ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square : 0.0L;
-    t = t < 0.0L ? 0.0L : (t > 1.0L ? 1.0L : t);
-    dx = p[0] - a[0] - t * dx;
-    dy = p[1] - a[1] - t * dy;
-    return sqrtl(dx * dx + dy * dy);
+static long double point_to_segment(const long double *p, const long double *a, const long double *b) { // squared
+    long double dx = b[0] - a[0], dy = b[1] - a[1], px = p[0] - a[0], py = p[1] - a[1];
+    long double square = dx * dx + dy * dy, t = px * dx + py * dy;
+    if (t <= 0.0L || !(square > 0.0L)) {
+        return px * px + py * py;
+    }
+    t = t < square ? t / square : 1.0L;
+    return (px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy);
 }
 
 static long double side_of(const long double *a, const long double *b, const long double *p) {
@@ -483,27 +495,25 @@ static long double areas_gap(long double (*v)[2], int n, long double (*w)[2], in
             if (segments_cross(a, b, c, d)) {
                 return 0.0L;
             }
-            gap = fminl(gap, fminl(point_to_segment(a, c, d), point_to_segment(c, a, b)));
+            long double square = fminl(point_to_segment(a, c, d), point_to_segment(c, a, b));
+            gap = square < gap ? square : gap;
         }
     }
-    return gap;
+    return sqrtl(gap);
 }
 
-static void limits_of(long double (*v)[2], int n, long double *box) {
-    box[0] = box[2] = v[0][0];
-    box[1] = box[3] = v[0][1];
-    for (int i = 1; i < n; i++) {
-        box[0] = fminl(box[0], v[i][0]);
-        box[1] = fminl(box[1], v[i][1]);
-        box[2] = fmaxl(box[2], v[i][0]);
-        box[3] = fmaxl(box[3], v[i][1]);
-    }
+static int nearest_area; // of the pose before: looked at first, so that the boxes of the others are mostly too far away
+
+static bool boxes_are_within(const long double *a, const long double *b, long double gap) {
+    long double dx = a[0] > b[2] ? a[0] - b[2] : (b[0] > a[2] ? b[0] - a[2] : 0.0L);
+    long double dy = a[1] > b[3] ? a[1] - b[3] : (b[1] > a[3] ? b[1] - a[3] : 0.0L);
+    return dx * dx + dy * dy < gap * gap;
 }
 
 // Gap between the footprint at a pose and everything that stands; negative: that deep out of the bounds.
 static long double pose_gap(const long double *pose) {
-    long double v[16][2], box[4], other[4], c = cosl(pose[2]), s = sinl(pose[2]);
-    int n = (int)vehicle.n;
+    long double v[16][2], box[4], c = cosl(pose[2]), s = sinl(pose[2]);
+    int n = (int)vehicle.n, first = nearest_area < world_count ? nearest_area : 0;
     for (int i = 0; i < n; i++) {
         long double x = (long double)vehicle.footprint[i].x, y = (long double)vehicle.footprint[i].y;
         v[i][0] = pose[0] + c * x - s * y;
@@ -513,11 +523,12 @@ static long double pose_gap(const long double *pose) {
     long double gap = fminl(fminl(box[0] - (long double)world_bounds[0], box[1] - (long double)world_bounds[1]),
                             fminl((long double)world_bounds[2] - box[2], (long double)world_bounds[3] - box[3]));
     for (int i = 0; i < world_count; i++) {
-        area *a = &world_areas[i];
-        limits_of(a->v, a->n, other);
-        long double dx = fmaxl(other[0] - box[2], box[0] - other[2]), dy = fmaxl(other[1] - box[3], box[1] - other[3]);
-        if (fmaxl(dx, dy) < gap) {
-            gap = fminl(gap, areas_gap(v, n, a->v, a->n));
+        int at = i == 0 ? first : (i <= first ? i - 1 : i); // the first one, then the rest
+        area *a = &world_areas[at];
+        if (gap > 0.0L && boxes_are_within(box, a->box, gap)) {
+            long double other = areas_gap(v, n, a->v, a->n);
+            nearest_area = other < gap ? at : nearest_area;
+            gap = fminl(gap, other);
         }
     }
     return gap - (long double)vehicle.radius;
@@ -531,27 +542,40 @@ static long double lever_arm(void) {
     return lever;
 }
 
-// Least gap over samples of the whole motion. No sample is left out that could be smaller than the least found by more
-// than the way to its neighbours, `fine` (m) of any body point at most; where the gap is large the steps are as long
-// as it takes the fastest body point to use it up.
-UNUSED_OK double judge_gap(double fine) {
-    long double least = 1e9L, pose[3];
-    stretch_pose(&(stretch){.x = (long double)path.waypoints[0].x,
-                            .y = (long double)path.waypoints[0].y,
-                            .theta = (long double)path.waypoints[0].theta},
-                 0.0L, pose);
-    least = pose_gap(pose);
-    for (int i = 1; i < path.num_waypoints; i++) {
-        const stretch s = stretch_at(i);
-        long double rate = s.length + lever_arm() * fabsl(s.turn) + 1e-9L;
-        for (long double u = 0.0L; u < 1.0L;) {
-            stretch_pose(&s, u, pose);
-            long double gap = pose_gap(pose);
-            least = fminl(least, gap);
-            u += fmaxl((long double)fine, gap - least) / rate;
+// Lowers *least to the least gap on the piece, at most `within` (m) above the true one: halves intervals until half of
+// what any body point moves in one cannot take the gap at its middle below *least by more.
+static void judge_stretch(const stretch *s, long double within, long double *least) {
+    long double from[64], to[64], pose[3], rate = s->length + lever_arm() * fabsl(s->turn);
+    int n = 1;
+    from[0] = 0.0L;
+    to[0] = 1.0L;
+    while (n > 0 && *least > 0.0L) {
+        long double lo = from[--n], hi = to[n], middle = 0.5L * (lo + hi);
+        stretch_pose(s, middle, pose);
+        long double gap = pose_gap(pose);
+        *least = fminl(*least, gap);
+        if (gap - 0.5L * (hi - lo) * rate < *least - within) {
+            TEST_ASSERT_LESS_THAN(62, n);
+            from[n] = lo;
+            to[n++] = middle;
+            from[n] = middle;
+            to[n++] = hi;
         }
-        stretch_pose(&s, 1.0L, pose);
-        least = fminl(least, pose_gap(pose));
+    }
+}
+
+// Least gap (m) along the whole path, at most `within` above the true one; 0 or less as soon as something is hit.
+UNUSED_OK double judge_gap(double within) {
+    const aisle_waypoint_msg *w = &path.waypoints[0];
+    long double pose[3] = {(long double)w->x, (long double)w->y, (long double)w->theta};
+    long double least = pose_gap(pose);
+    for (int i = 1; i < path.num_waypoints && least > 0.0L; i++) {
+        const stretch s = stretch_at(i);
+        for (int at = 0; at <= 32 && least > 0.0L; at++) { // a good first guess leaves little to search
+            stretch_pose(&s, (long double)at / 32.0L, pose);
+            least = fminl(least, pose_gap(pose));
+        }
+        judge_stretch(&s, (long double)within, &least);
     }
     return (double)least;
 }
