@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#define ATTEMPTS_DISC 2U // at a seed, see route.h; the others are the body's
+#define ATTEMPTS 4U
 #define RESERVE 3U // proofs' worth of work units kept back when the swarm starts
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
@@ -161,19 +163,12 @@ static void begin_why(aisle_route *self) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
-// What the n-th attempt at a seed searches with. False: there is no such attempt.
-static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mode, uint32_t *stride) {
-    static const aisle_space_mode modes[] = {AISLE_SPACE_FREE_TURN, AISLE_SPACE_FREE_TURN, AISLE_SPACE_ALONG,
-                                             AISLE_SPACE_ALONG};
-    uint32_t attempts = aisle_vehicle_is_disc(self->vehicle) ? 2U : 4U;
-    if (n >= attempts) {
-        return false;
-    }
+// What the n-th attempt at a seed searches with.
+static uint32_t attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mode) {
     double cells = floor(AISLE_ROUTE_STRIDE / aisle_layout_grid(self->layout)->lattice.res + 1e-6);
     bool coarse = n % 2U == 0U && cells >= 2.0;
-    *mode = modes[n];
-    *stride = coarse ? (uint32_t)cells : 1U;
-    return true;
+    *mode = n < ATTEMPTS_DISC ? AISLE_SPACE_FREE_TURN : AISLE_SPACE_ALONG;
+    return coarse ? (uint32_t)cells : 1U;
 }
 
 // Would the attempt only repeat another one?
@@ -195,12 +190,14 @@ static void begin_leg(aisle_route *self, uint32_t n) {
         self->seed.phase = AISLE_SEED_DONE;
         return;
     }
-    uint32_t stride;
-    for (; attempt_of(self, n, &leg->mode, &stride); n++) {
+    // Before the body's attempts the proof is asked whether there can be a way at all.
+    uint32_t end = n < ATTEMPTS_DISC || aisle_vehicle_is_disc(self->vehicle) ? ATTEMPTS_DISC : ATTEMPTS;
+    for (; n < end; n++) {
+        uint32_t stride = attempt_of(self, n, &leg->mode);
+        leg->attempt = n;
         if (attempt_is_idle(self, n, stride)) {
             continue;
         }
-        leg->attempt = n;
         aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
         if (aisle_seed_start(&self->seed, &self->space, &self->objective, stride, from, to,
                              self->points + leg->first) == AISLE_OK) {
@@ -265,10 +262,14 @@ static aisle_status step_taut(aisle_route *self, uint32_t units) {
 
 static aisle_status step_why(aisle_route *self, uint32_t units) {
     aisle_status st = aisle_why_step(&self->why, units, &self->spent);
-    if (st == AISLE_BUSY) {
+    const aisle_why *why = &self->why;
+    if (st == AISLE_PARTIAL && !why->proved && self->legs[self->leg].attempt < ATTEMPTS_DISC) {
+        begin_leg(self, ATTEMPTS_DISC); // the body along the motion may still pass; nothing for a disc
         return AISLE_BUSY;
     }
-    const aisle_why *why = &self->why;
+    if (st == AISLE_BUSY || st == AISLE_PARTIAL) {
+        return AISLE_BUSY;
+    }
     if (st != AISLE_OK) {
         return refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
     }
@@ -482,9 +483,10 @@ static aisle_status step_verify(aisle_route *self, uint32_t units) {
 
 // ---- SWARM
 
-static bool budget_left_for_swarm(const aisle_route *self) {
-    uint32_t reserve = RESERVE * self->proof_units;
-    return self->spent < self->budget && self->budget - self->spent > reserve / 4U;
+// What the swarm may still spend.
+static uint32_t left_for_swarm(const aisle_route *self) {
+    uint64_t kept = (uint64_t)self->spent + (uint64_t)RESERVE * self->proof_units / 4U;
+    return kept < self->budget ? self->budget - (uint32_t)kept : 0U;
 }
 
 // Starts the swarm on the leg under way or a later one; goes on to build when there is none left.
@@ -493,7 +495,7 @@ static void begin_swarm_leg(aisle_route *self) {
     for (; self->leg < (uint32_t)self->request.num_goals; self->leg++) {
         aisle_leg *leg = &self->legs[self->leg];
         aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
-        if (leg->count >= 2U && budget_left_for_swarm(self) &&
+        if (leg->count >= 2U && left_for_swarm(self) > 0U &&
             aisle_swarm_start(&self->swarm, &self->space, &self->objective, &self->request.options,
                               self->points + leg->first, leg->count) == AISLE_OK) {
             return;
@@ -508,8 +510,9 @@ static void begin_swarm_leg(aisle_route *self) {
 }
 
 static aisle_status step_swarm(aisle_route *self, uint32_t units) {
-    aisle_status st = aisle_swarm_step(&self->swarm, units, &self->spent);
-    if (st == AISLE_BUSY && budget_left_for_swarm(self)) {
+    uint32_t left = left_for_swarm(self);
+    aisle_status st = aisle_swarm_step(&self->swarm, units < left ? units : left, &self->spent);
+    if (st == AISLE_BUSY && left_for_swarm(self) > 0U) {
         return AISLE_BUSY;
     }
     aisle_leg *leg = &self->legs[self->leg];
@@ -546,7 +549,7 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
 
 aisle_status aisle_route_step(aisle_route *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;
-    uint32_t until = self->spent + units;
+    uint32_t until = units < UINT32_MAX - self->spent ? self->spent + units : UINT32_MAX;
     while (st == AISLE_BUSY && self->spent < until) {
         if (self->spent >= self->budget) {
             self->stage = AISLE_ROUTE_END;

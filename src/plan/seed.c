@@ -243,10 +243,14 @@ static aisle_status straighten(aisle_seed *self, uint32_t units) {
     return self->at < end ? AISLE_BUSY : AISLE_OK;
 }
 
+// Node by node: where it stops must depend on the units alone, and a node costs more than one.
 static aisle_status search(aisle_seed *self, uint32_t units) {
-    uint32_t before = self->search.expanded;
-    aisle_status st = aisle_astar_step(&self->search, units);
-    self->units += self->search.expanded - before;
+    aisle_status st = AISLE_BUSY;
+    while (st == AISLE_BUSY && self->units < units) {
+        uint32_t before = self->search.expanded;
+        st = aisle_astar_step(&self->search, 1U);
+        self->units += self->search.expanded - before;
+    }
     return st;
 }
 
