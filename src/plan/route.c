@@ -180,7 +180,7 @@ static bool attempt_is_idle(const aisle_route *self, uint32_t n, uint32_t stride
 // Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
 static void begin_leg(aisle_route *self, uint32_t n) {
     aisle_leg *leg = &self->legs[self->leg];
-    *leg = (aisle_leg){.first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0};
+    *leg = (aisle_leg){.first = self->point_count, .attempt = n, .seed_value = -1.0, .swarm_value = -1.0};
     aisle_vec2 from = place_of(leg_start(self, self->leg));
     aisle_vec2 to = place_of(&self->request.goals[self->leg]);
     self->stage = AISLE_ROUTE_SEED;
@@ -380,9 +380,10 @@ static void begin_swarm_leg(aisle_route *self);
 
 static aisle_status after_first_proof(aisle_route *self) {
     self->proof_units = self->spent;
-    // A taut string cannot be beaten on length: AUTO leaves the swarm to the other objectives.
-    bool taut_is_best =
-        self->request.options.planner == AISLE_OPTIONS_AUTO && aisle_objective_is_length(&self->objective);
+    // A disc's taut string cannot be beaten on length: AUTO leaves the swarm to other bodies (which it held to the
+    // turning disc) and other objectives.
+    bool taut_is_best = self->request.options.planner == AISLE_OPTIONS_AUTO &&
+                        aisle_objective_is_length(&self->objective) && aisle_vehicle_is_disc(self->vehicle);
     if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops) {
         self->stage = AISLE_ROUTE_END;
         return AISLE_OK;
