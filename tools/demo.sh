@@ -40,11 +40,11 @@ on_the_bus() { # inside the namespace
     say "an independent look at them: footprint every centimetre against every cell"
     "$aisle" check "$out/replies.log" --map "$map"
 
-    say "the same AGV under a load of 3.0 x 2.0 m, which does not fit"
+    say "the same AGV under a load of 3.0 x 2.2 m, which does not fit"
     "$aisle" vehicle --vehicle tools/demo/wide_load.yaml
     local answer=0
     "$aisle" query --map "$map" --start 2,-15 --goal -12.8,10.6 --vehicle tools/demo/wide_load.yaml \
-        --save "$out/refused.log" || answer=$?
+        --work-units 100000000 --timeout 60 --save "$out/refused.log" || answer=$?
     [ "$answer" = 1 ] || { echo "demo: expected a refusal" >&2 && exit 1; }
 
     say "the picture"

@@ -96,6 +96,7 @@ def test_a_gap_too_narrow_is_named_with_its_width(daemon, data):
     answer = json.loads(line)
     assert answer["status"] == "NONE" and answer["cause"] == "TOO_NARROW"
     assert answer["cause_value"] == pytest.approx(1.2, abs=0.11)
+    assert math.hypot(answer["place"][0] - 7.5, answer["place"][1] - 11.8) < 0.5  # the opening
 
 
 def test_budget_too_small_is_not_called_a_proof(daemon, data):

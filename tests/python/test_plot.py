@@ -11,6 +11,7 @@ from aisle_tools.bus import LogWriter, Recording, read_events
 from aisle_tools.check import Obstacles
 from aisle_tools.errors import UserError
 from aisle_tools.world import Polygon, World
+from conftest import DATA
 from PIL import Image
 
 
@@ -62,6 +63,24 @@ def test_plot_marks_a_refusal_in_red(tmp_path, log):
     assert cli.main(["plot", "--replies", str(log), "--out", str(out)]) == 0
     pixels = np.asarray(Image.open(out).convert("RGB")).reshape(-1, 3)
     assert (np.abs(pixels.astype(int) - [0xD6, 0x27, 0x28]).max(axis=1) < 8).sum() > 200
+
+
+def test_refusal_with_a_place_is_no_path(tmp_path, capsys):
+    from aisle_tools import names
+
+    refused = reply(1, [(7.5, 11.8)])
+    refused.status, refused.cause, refused.cause_value, refused.cause_id = path_t.NONE, status_t.TOO_NARROW, 1.2, 2
+    assert not names.is_path(refused) and names.place(refused) == (7.5, 11.8)
+    assert names.reason(refused) == "TOO_NARROW, the gap is 1.200 m, by polygon 2, at (7.50, 11.80)"
+    assert names.is_path(reply(1, [(0.0, 0.0)])) and names.place(reply(1, [(0.0, 0.0)])) is None
+    only = tmp_path / "only.log"
+    writer = LogWriter(only, "AISLE")
+    writer.publish("REPLY", refused)
+    writer.close()
+    scenario = str(DATA / "scenarios" / "barrier_1.json")
+    assert cli.main(["plot", "--scenario", scenario, "--replies", str(only), "--out", str(tmp_path / "p.png")]) == 0
+    assert cli.main(["check", str(only), "--scenario", scenario]) == 0
+    assert "0 at fault" in capsys.readouterr().out
 
 
 def test_plot_draws_a_scanned_map(tmp_path, data):

@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _print_row(path: path_t, recording: Recording, obstacles: Obstacles, body: vehicle.Body, step: float) -> bool:
     ident = path.query_id or path.path_revision
-    if path.num_waypoints == 0:
+    if not names.is_path(path):
         print(f"{ident:>10} {names.result_name(path.status):>7} {'-':>8} {'-':>9} {'-':>7}  {names.reason(path)}")
         return False
     report = check_path(path, obstacles, body, recording.queries.get(path.query_id), step)

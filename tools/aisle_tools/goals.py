@@ -84,7 +84,7 @@ class Drive:
             return
         self.path = msg
         text = f"path {msg.path_revision}: {names.result_name(msg.status)}"
-        if msg.num_waypoints:
+        if names.is_path(msg):
             text += f", {msg.length:.2f} m, {msg.duration:.1f} s, clearance {msg.clearance_min:.3f} m"
         print(text + (f", {names.reason(msg)}" if msg.cause else ""), flush=True)
 

@@ -50,6 +50,18 @@ def option_value(name: str, allowed: list[str]) -> int:
     raise UserError(f"'{name}' is none of: {', '.join(a.lower() for a in allowed)}")
 
 
+def is_path(path: path_t) -> bool:
+    """False for a refusal, whose one waypoint, if any, is the place that is in the way."""
+    return path.status != path_t.NONE and path.num_waypoints > 0
+
+
+def place(path: path_t) -> tuple[float, float] | None:
+    """Where a refusal has its reason."""
+    if path.status != path_t.NONE or path.num_waypoints == 0:
+        return None
+    return path.waypoints[0].x, path.waypoints[0].y
+
+
 def reason(path: path_t) -> str:
     """Why there is no path, in words."""
     text = cause_name(path.cause)
@@ -57,6 +69,9 @@ def reason(path: path_t) -> str:
         text += f", the gap is {path.cause_value:.3f} m"
     if path.cause_id != 0:
         text += f", {what(path.cause, path.cause_id)}"
+    where = place(path)
+    if where is not None:
+        text += f", at ({where[0]:.2f}, {where[1]:.2f})"
     if path.cause in HINTS:
         text += f" ({HINTS[path.cause]})"
     return text
@@ -66,7 +81,7 @@ def what(cause: int, ident: int) -> str:
     """The thing cause_id means."""
     if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED, status_t.TOO_NARROW, status_t.KINEMATIC):
         where = {-1: "the scanned map", -2: "the bounds"}.get(ident, f"polygon {ident}")
-        return f"{'by' if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED) else 'at'} {where}"
+        return f"by {where}"
     if cause in (status_t.GOAL_OUTSIDE, status_t.NO_PATH):
         return f"goal {ident}"
     if cause == status_t.LIMIT:

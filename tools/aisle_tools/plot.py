@@ -109,7 +109,7 @@ class Picture:
     def add(self, pairs: list, body: Body, footprint_step: float | None) -> None:
         for asked, reply in pairs:
             self.number += 1
-            if reply.num_waypoints > 0:
+            if names.is_path(reply):
                 self._add_path(reply, body, footprint_step)
                 self._mark_ends(asked, reply)
             else:
@@ -149,8 +149,7 @@ class Picture:
     def _mark_refusal(self, asked: query_t | None, reply: path_t) -> None:
         text = f"{self.number}: {names.reason(reply)}"
         if asked is None:
-            self.axes.plot([], [], "x", color=REFUSED, label=text)
-            self.axes.legend(loc="upper left", fontsize=8)
+            self._mark_unasked(reply, text)
             return
         start, goals = (asked.start.x, asked.start.y), [(g.x, g.y) for g in asked.goals]
         self.axes.plot(*zip(start, *goals), "--", color=REFUSED, lw=0.8, alpha=0.6, zorder=4)
@@ -159,8 +158,19 @@ class Picture:
             self.axes.plot(*goal, "*", ms=12, mfc="white", mec=REFUSED, mew=1.2, zorder=6)
         self._mark_place(self._place(reply, start, goals), text)
 
+    def _mark_unasked(self, reply: path_t, text: str) -> None:
+        told = names.place(reply)
+        if told is not None:
+            self._mark_place((*told, 0.5), text)
+            return
+        self.axes.plot([], [], "x", color=REFUSED, label=text)
+        self.axes.legend(loc="upper left", fontsize=8)
+
     def _place(self, reply: path_t, start: tuple, goals: list[tuple]) -> tuple[float, float, float]:
-        """(x, y, radius) of what stands in the way."""
+        """(x, y, radius) of what stands in the way: as told, else guessed from the cause."""
+        told = names.place(reply)
+        if told is not None:
+            return (*told, max(0.5 * reply.cause_value if reply.cause == status_t.TOO_NARROW else 0.0, 0.5))
         if reply.cause in (status_t.START_OCCUPIED, status_t.POSE_OUTSIDE):
             return (*start, 0.5)
         if reply.cause == status_t.GOAL_OUTSIDE and 1 <= reply.cause_id <= len(goals):

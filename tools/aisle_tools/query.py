@@ -237,7 +237,7 @@ class Table:
             print(json.dumps(as_dict(leg, reply, seconds)), flush=True)
             return
         given = f"{blank(leg.given_length, 8, 2)} " if self.with_given else ""
-        has = reply.num_waypoints > 0
+        has = names.is_path(reply)
         print(
             f"{leg.name:>5} {place(leg.start):>16} {place(leg.goals[-1]):>16} {names.result_name(reply.status):>7} "
             f"{blank(reply.length if has else math.nan, 8, 2)} {given}{blank(reply.length_bound or math.nan, 8, 2)} "
@@ -272,7 +272,8 @@ def as_dict(leg: Leg, reply: path_t, seconds: float) -> dict:
         "duration": reply.duration,
         "work_units": reply.work_units,
         "ms": 1000.0 * (reply.planning_time or seconds),
-        "waypoints": reply.num_waypoints,
+        "waypoints": reply.num_waypoints if names.is_path(reply) else 0,
+        "place": names.place(reply),
         "certificate": reply.certificate & 0xFFFFFFFF,
     }
     if not math.isnan(leg.given_length):
