@@ -38,6 +38,7 @@ extern "C" {
 #define AISLE_LEASE_US 1000000       // a path is valid this long after each sending
 #define AISLE_LEASE_RESEND_US 500000 // and sent again this often
 #define AISLE_WORK_UNITS_DEFAULT 5000000
+#define AISLE_PLANNER_ALIGN 64 // bytes, of the block
 
 typedef struct aisle_planner aisle_planner; // lies inside the caller's block
 
@@ -121,7 +122,7 @@ typedef struct aisle_memory_row { // one line of aisled --memory
 // Bytes of the block for these limits; 0 if a limit is out of its range. O(1).
 size_t aisle_planner_memsize(const aisle_limits *limits);
 
-// Carves `memory` (aligned for any type; size >= memsize) and zeroes it. *planner points into it.
+// Carves `memory` (aligned to AISLE_PLANNER_ALIGN; size >= memsize) and zeroes it. *planner points into it.
 // AISLE_ERR_ARG: NULL, misaligned, a limit or the vehicle is out of range. AISLE_ERR_CAPACITY: too small.
 aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *config, aisle_planner **planner);
 

@@ -7,6 +7,10 @@
 #include <stddef.h>
 #include <string.h>
 
+#if AISLE_PLANNER_ALIGN != AISLE_ARENA_ALIGN
+#error "the planner's block is an arena"
+#endif
+
 #define HEADING_MAX 1e4 // rad of a stop's heading; also of its tolerances, in their units
 
 // ---- memory

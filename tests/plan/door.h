@@ -35,7 +35,8 @@ HALL_UNUSED void door_forget(void) {
 
 // A planner in block 0 or 1; config as it stands.
 HALL_UNUSED void door_open(int which) {
-    unsigned char *at = door_block[which] + (64U - (uintptr_t)door_block[which] % 64U) % 64U;
+    unsigned char *at = door_block[which] + (AISLE_PLANNER_ALIGN - (uintptr_t)door_block[which] % AISLE_PLANNER_ALIGN) %
+                                                AISLE_PLANNER_ALIGN;
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_planner_init(at, 40U << 20, &door_config, &door));
     door_now = 1000000;
     door_units = 20000;
