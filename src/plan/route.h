@@ -6,7 +6,8 @@
 // begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
 // Attempts at a seed, until one finds a way: the turning disc, then the exact body along the motion (not for discs), each first with
-// AISLE_ROUTE_STRIDE between search cells, then with every cell. For pure length the disc starts with every cell: a narrow
+// AISLE_ROUTE_STRIDE between search cells, then with every cell; between the two the proof of why.h: no way for the disc the
+// footprint holds, no search for the body. For pure length the disc starts with every cell: a narrow
 // passage is worth more there.
 // Budget: work units of everything together; spent before a first proof: cause BUDGET; spent later: the first path is
 // the answer. If the verifier turns the seed path down it is built again with stops in all corners; if that fails too,

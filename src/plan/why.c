@@ -92,14 +92,14 @@ static aisle_status measure_widest(aisle_why *self) {
     return st;
 }
 
-// Takes the end of one search; starts the next one (AISLE_BUSY) or ends.
+// Takes the end of one search; starts the next one (AISLE_BUSY, AISLE_PARTIAL after the first) or ends.
 static aisle_status next_search(aisle_why *self, bool found) {
     switch (self->stage) {
     case AISLE_WHY_PROVE:
         self->proved = !found;
         self->stage = AISLE_WHY_ANY;
         search_from(self, 1U);
-        return AISLE_BUSY;
+        return AISLE_PARTIAL;
     case AISLE_WHY_ANY:
         self->connected = found;
         self->lo = 1U;

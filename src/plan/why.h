@@ -37,6 +37,7 @@ typedef struct aisle_why {
 
 void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal);
 
-// AISLE_BUSY; AISLE_OK: answered; AISLE_ERR_CAPACITY: the open list is full.
+// AISLE_BUSY; AISLE_PARTIAL: step 1 has just ended, `proved` stands (once; call again for the rest); AISLE_OK: answered;
+// AISLE_ERR_CAPACITY: the open list is full.
 aisle_status aisle_why_step(aisle_why *self, uint32_t units, uint32_t *spent);
 #endif
