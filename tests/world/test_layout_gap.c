@@ -105,6 +105,26 @@ static void test_equal_gaps_answer_the_least_id(void) {
     TEST_ASSERT_EQUAL_INT32(0, id);
 }
 
+static void test_the_outermost_rows_and_columns_of_a_scan_are_seen(void) {
+    for (uint32_t side = 0; side < 4U; side++) {
+        fix_start();
+        memset(&scene, 0, sizeof scene);
+        scene.parts = 1;
+        aisle_rng rng = aisle_rng_seed(53);
+        fix_random_scan(&scene, &rng, 60, 50, 1000000, 1);
+        memset(scene.occupied, 0, sizeof scene.occupied);
+        static const uint32_t cells[4] = {30, 49 * 60 + 30, 25 * 60, 25 * 60 + 59}; // below, above, left, right
+        scene.occupied[cells[side]] = true;
+        fix_load(&scene);
+        aisle_vec2 v[4]; // 0.03 beside the cell along the border, 0.05 off the border
+        const aisle_vec2 lo[4] = {{4.13, 2.05}, {4.13, 5.95}, {1.05, 4.63}, {5.95, 4.63}};
+        gen_box(lo[side], aisle_vec2_of(lo[side].x + 1.0, lo[side].y + 1.0), v);
+        int32_t id;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.03, aisle_layout_gap(&fix_layout, &(aisle_convex){v, 4, 0.0}, 1.0, &id));
+        TEST_ASSERT_EQUAL_INT32(AISLE_LAYOUT_ID_SCAN, id);
+    }
+}
+
 static void test_a_body_that_is_not_finite_is_in_contact(void) {
     memset(&scene, 0, sizeof scene);
     scene.parts = 1;
@@ -125,6 +145,7 @@ int main(void) {
     RUN_TEST(test_gap_and_id_are_those_of_all_polygons_and_the_bounds);
     RUN_TEST(test_gap_and_id_are_those_of_all_cells_polygons_and_the_bounds);
     RUN_TEST(test_equal_gaps_answer_the_least_id);
+    RUN_TEST(test_the_outermost_rows_and_columns_of_a_scan_are_seen);
     RUN_TEST(test_a_body_that_is_not_finite_is_in_contact);
     return UNITY_END();
 }

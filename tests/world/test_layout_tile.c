@@ -251,7 +251,9 @@ static void test_runs_must_sum_to_the_tile_and_be_as_short_as_they_can(void) {
     fix_expect_refusal(send_rle(too_few, 2, 20, 10), AISLE_STATUS_MALFORMED, 1);
     fix_expect_refusal(send_rle(long_leb, 6, 20, 10), AISLE_STATUS_MALFORMED, 1);
     fix_expect_refusal(send_rle(over_32, 5, 20, 10), AISLE_STATUS_MALFORMED, 1);
+    const uint8_t wraps_alone[] = {0xC8, 0x81, 0x80, 0x80, 0x10}; // 2^32 + 200
     fix_expect_refusal(send_rle(wraps, 7, 20, 10), AISLE_STATUS_MALFORMED, 1);
+    fix_expect_refusal(send_rle(wraps_alone, 5, 20, 10), AISLE_STATUS_MALFORMED, 1);
     fix_expect_refusal(send_rle(whole, 0, 20, 10), AISLE_STATUS_MALFORMED, 1);
 }
 
