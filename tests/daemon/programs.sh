@@ -1,8 +1,8 @@
 #!/bin/sh
 # aisled and aisle-replay as programs: options, exit codes, one line on stderr, clean stop. On LCM's memq, so no network.
-#   programs.sh AISLED AISLE_REPLAY PACKAGING
+#   programs.sh AISLED AISLE_REPLAY PACKAGING DAEMON_LIBRARY
 set -u
-aisled=$1 replay=$2 packaging=$3
+aisled=$1 replay=$2 packaging=$3 library=$4
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 failures=0
@@ -54,6 +54,11 @@ for signal in TERM INT; do
     [ $took -lt 200 ] || fail "stop took $took ms after SIG$signal"
     [ -s "$work/err" ] && fail "said something when stopped"
 done
+
+# Every allocation of the daemon's own is in engine.c, before the loop.
+nm -A "$library" 2>"$work/err" | grep -E ' U (malloc|calloc|realloc|aligned_alloc|posix_memalign|strdup|mmap)$' \
+    | grep -v ':engine.c' >"$work/out"
+[ -s "$work/out" ] && fail "allocates outside engine.c"
 
 expect 0 "$replay" --version && says out '^aisle-replay '
 expect 2 "$replay" && says err 'log is missing' && one_line
