@@ -156,19 +156,24 @@ static aisle_status check(aisle_route *self) {
 
 // ---- SEED, TAUT
 
+static uint32_t coarse_stride(const aisle_route *self) {
+    const aisle_lattice *lattice = &aisle_layout_grid(self->layout)->lattice;
+    double cells = floor(AISLE_ROUTE_STRIDE / lattice->res + 1e-6);
+    double side = (double)(lattice->w < lattice->h ? lattice->w : lattice->h);
+    return (uint32_t)aisle_clamp(cells, 1.0, side);
+}
+
 // Why there is no seed for this leg.
 static void begin_why(aisle_route *self) {
     aisle_why_start(&self->why, &self->seed, &self->space, place_of(leg_start(self, self->leg)),
-                    place_of(&self->request.goals[self->leg]));
+                    place_of(&self->request.goals[self->leg]), coarse_stride(self));
     self->stage = AISLE_ROUTE_WHY;
 }
 
 // What the n-th attempt at a seed searches with.
 static uint32_t attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mode) {
-    double cells = floor(AISLE_ROUTE_STRIDE / aisle_layout_grid(self->layout)->lattice.res + 1e-6);
-    bool coarse = n % 2U == 0U && cells >= 2.0;
     *mode = n < ATTEMPTS_DISC ? AISLE_SPACE_FREE_TURN : AISLE_SPACE_ALONG;
-    return coarse ? (uint32_t)cells : 1U;
+    return n % 2U == 0U ? coarse_stride(self) : 1U;
 }
 
 // Would the attempt only repeat another one?

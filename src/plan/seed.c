@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#define SEARCH_BATCH 32U // nodes
+
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_astar_carve(&self->search, arena, limits->cells, limits->open_nodes);
     self->cells = (uint32_t *)aisle_arena_take(arena, AISLE_SEED_CELLS_MAX, sizeof(uint32_t));
@@ -57,8 +59,7 @@ static uint32_t enter_along(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
     (void)dir;
     const aisle_grid *grid = self->space->grid;
     uint32_t cell = grid_cell(self, to);
-    double half_diagonal = 0.70710678118654752;
-    if ((sqrt((double)grid->field[cell]) + half_diagonal) * grid->lattice.res < self->space->reach) {
+    if (sqrt((double)grid->field[cell]) * grid->lattice.res + self->space->beyond < self->space->reach) {
         return AISLE_ASTAR_BARRED_CELL;
     }
     aisle_vec2 a = aisle_lattice_centre(&grid->lattice, grid_cell(self, from));
@@ -70,7 +71,8 @@ static uint32_t enter_width(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
     const aisle_seed *self = (const aisle_seed *)ctx;
     (void)from;
     (void)dir;
-    return self->space->grid->field[to] >= self->open_from ? AISLE_ASTAR_FACTOR_ONE : AISLE_ASTAR_BARRED_CELL;
+    return self->space->grid->field[grid_cell(self, to)] >= self->open_from ? AISLE_ASTAR_FACTOR_ONE
+                                                                            : AISLE_ASTAR_BARRED_CELL;
 }
 
 static uint32_t enter_proof(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
@@ -244,23 +246,30 @@ static aisle_status straighten(aisle_seed *self, uint32_t units) {
 }
 
 // Node by node: where it stops must depend on the units alone, and a node costs more than one.
+// Expands nodes until `units` are spent; the inlets spend too, so in small batches.
 static aisle_status search(aisle_seed *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;
     while (st == AISLE_BUSY && self->units < units) {
         uint32_t before = self->search.expanded;
-        st = aisle_astar_step(&self->search, 1U);
-        self->units += self->search.expanded - before;
+        st = aisle_astar_step(&self->search, SEARCH_BATCH);
+        self->units += self->search.expanded - before + 1U; // 1: a batch of stale entries is work too
+    }
+    return st;
+}
+
+// The path found, as cells of the grid.
+static aisle_status fetch_path(aisle_seed *self) {
+    aisle_status st = aisle_astar_path(&self->search, self->cells, AISLE_SEED_CELLS_MAX, &self->cell_count);
+    for (uint32_t i = 0; st == AISLE_OK && i < self->cell_count; i++) {
+        self->cells[i] = grid_cell(self, self->cells[i]);
     }
     return st;
 }
 
 static aisle_status begin_straightening(aisle_seed *self) {
-    aisle_status st = aisle_astar_path(&self->search, self->cells, AISLE_SEED_CELLS_MAX, &self->cell_count);
+    aisle_status st = fetch_path(self);
     if (st != AISLE_OK) {
         return st;
-    }
-    for (uint32_t i = 0; i < self->cell_count; i++) {
-        self->cells[i] = grid_cell(self, self->cells[i]);
     }
     self->at = 0;
     self->points[0] = self->start;
@@ -288,30 +297,36 @@ aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent) 
     return st;
 }
 
-static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+static uint32_t search_cell(const aisle_seed *self, const aisle_astar_config *cfg, aisle_vec2 p) {
+    const aisle_lattice *lattice = &self->space->grid->lattice;
+    double x = aisle_clamp((p.x - lattice->x0) / step_length(self), 0.0, (double)(cfg->w - 1U));
+    double y = aisle_clamp((p.y - lattice->y0) / step_length(self), 0.0, (double)(cfg->h - 1U));
+    return (uint32_t)y * cfg->w + (uint32_t)x;
+}
+
+static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                               aisle_astar_enter_fn enter) {
     self->space = space;
     self->for_refusal = true;
-    self->stride = 1;
+    self->stride = stride;
     self->units = 0;
     self->phase = AISLE_SEED_SEARCH;
     aisle_astar_config cfg = search_config(self, enter);
-    bool inside;
-    cfg.start = aisle_lattice_cell(&space->grid->lattice, start, &inside);
-    cfg.goal = aisle_lattice_cell(&space->grid->lattice, goal, &inside);
+    cfg.start = search_cell(self, &cfg, start);
+    cfg.goal = search_cell(self, &cfg, goal);
     aisle_status st = aisle_astar_start(&self->search, &cfg);
     AISLE_ASSERT(st == AISLE_OK);
 }
 
 void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach) {
     self->proof_reach = reach;
-    start_for_refusal(self, space, start, goal, enter_proof);
+    start_for_refusal(self, space, start, goal, 1U, enter_proof);
 }
 
-void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                             uint32_t open_from) {
     self->open_from = open_from;
-    start_for_refusal(self, space, start, goal, enter_width);
+    start_for_refusal(self, space, start, goal, stride, enter_width);
 }
 
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent) {
@@ -320,4 +335,8 @@ aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t 
     *spent += self->units;
     self->units = 0;
     return st;
+}
+
+aisle_status aisle_seed_refusal_path(aisle_seed *self) {
+    return fetch_path(self);
 }

@@ -3,15 +3,16 @@
 // Search: A* over the planning grid (algo/astar.h), the cost of a cell being the objective's density at its clearance,
 // so that the homotopy class already suits the objective. FREE_TURN bars cells where the turning disc does not fit
 // (exactly, where the field leaves a doubt); ALONG bars moves the footprint cannot make with its heading along them.
-// Stride: the search may look at every k-th cell only. A passage at least a stride wider than the vehicle is never lost
-// by that; the caller tries stride 1 when a larger one finds nothing.
+// Stride: the search may look at every k-th cell only. A straight passage 1.25 strides wider than the turning disc with
+// its margin (of a radius of two strides or more) is never lost by that; the caller tries stride 1 when a larger one
+// finds nothing.
 // Ends: start and goal are joined to the nearest free cell centre that the exact footprint reaches straight, heading
 // along the way, within AISLE_SEED_JOIN m: a station may be too tight to turn in.
 // Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping,
 // then halving) at no higher cost than the cells' own way.
 //
 // Two more searches serve refusals (why.h) and give no polyline. PROOF: a cell is open if any point of it may keep
-// `reach` from every obstacle (exactly, down to 1 / 64 of a cell); if such cells do not connect, no way of that width
+// `reach` from every obstacle (exactly, down to 1 / 8 of a cell); if such cells do not connect, no way of that width
 // exists. WIDTH: a cell is open from a field value on.
 //
 // Memory: search 2 bytes a cell, path 4 bytes * AISLE_SEED_CELLS_MAX, table. Time: O(cells expanded), sliced.
@@ -64,9 +65,12 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
 // *spent.
 aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent);
 
-// Whether start and goal connect; only aisle_astar_* results follow.
+// Whether start and goal connect: step_refusal() answers as step() does. stride as above, [1, sides of the grid].
 void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach);
-void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                             uint32_t open_from);
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent);
+
+// After step_refusal() said AISLE_OK: cells[0..cell_count) of the grid, from start to goal. AISLE_ERR_CAPACITY: too many.
+aisle_status aisle_seed_refusal_path(aisle_seed *self);
 #endif

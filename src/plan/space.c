@@ -11,7 +11,7 @@
 #define STRAY_STEP 1e-3     // m, of piece_clearance's subdivision: from straight ways
 #define OVERREACH_STEP 4e-3 // m, and of the hull beyond the sweep of a body that turns
 #define SUBDIVISIONS_MAX 4096U
-#define HOLDS_DEPTH 6U                    // halvings of a cell
+#define HOLDS_DEPTH 3U                    // halvings of a cell
 #define HALF_DIAGONAL 0.70710678118654752 // of a square of side 1
 
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
@@ -48,6 +48,9 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
     self->mode = mode;
     self->keep = vehicle->margin + AISLE_SPACE_SLACK;
     self->reach = self->keep + (mode == AISLE_SPACE_FREE_TURN ? vehicle->outer_radius : vehicle->inner_radius);
+    // A scanned cell is an obstacle all over and holds a disc of half its side; a cell some polygon touches may be all but free.
+    bool solid = aisle_layout_has_scan(layout) && aisle_layout_zone_count(layout) == 0U;
+    self->beyond = self->grid->lattice.res * (solid ? -0.5 : HALF_DIAGONAL);
     self->lever = 0.0;
     measure_body(self);
     uint32_t cells = self->grid->lattice.w * self->grid->lattice.h;
@@ -70,7 +73,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
     if (centre_gap - half_diagonal >= need) {
         return true;
     }
-    if (centre_gap + half_diagonal < need) {
+    if (centre_gap + self->beyond < need) {
         return false;
     }
     uint64_t bit = 1ULL << (cell % 64U);
@@ -98,11 +101,11 @@ bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach
     if (centre_gap - side * HALF_DIAGONAL >= reach) {
         return true;
     }
-    if (centre_gap + 2.0 * side * HALF_DIAGONAL < reach) {
+    if (centre_gap + self->beyond + side * HALF_DIAGONAL < reach) {
         return false;
     }
-    aisle_vec2 open[4 * HOLDS_DEPTH + 1]; // centres of squares in doubt; their depths beside them
-    uint32_t depth[4 * HOLDS_DEPTH + 1];
+    aisle_vec2 open[3 * HOLDS_DEPTH + 1]; // centres of squares in doubt; their depths beside them
+    uint32_t depth[3 * HOLDS_DEPTH + 1];
     uint32_t count = 1;
     open[0] = aisle_lattice_centre(&self->grid->lattice, cell);
     depth[0] = 0;
@@ -111,7 +114,7 @@ bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach
         aisle_vec2 c = open[count];
         uint32_t d = depth[count];
         double half = 0.5 * side / (double)(1U << d);
-        double gap = point_gap(self, c, reach + 4.0 * half);
+        double gap = point_gap(self, c, reach);
         *units += 1U;
         if (gap >= reach || (d == HOLDS_DEPTH && gap + 2.0 * half * HALF_DIAGONAL >= reach)) {
             return true;

@@ -28,7 +28,8 @@ typedef struct aisle_space {
     double reach;        // FREE_TURN: outer radius + keep; ALONG: inner radius + keep (necessary, not sufficient)
     uint64_t *cell_free; // [cells / 64 + 1] bits: the exact test of this centre said free
     uint32_t cells;
-    double lever; // m, farthest footprint point from the origin, its rounding left out
+    double beyond; // m, what an obstacle may lie beyond the centre of its occupied cell; negative where cells are solid
+    double lever;  // m, farthest footprint point from the origin, its rounding left out
     // ALONG: discs on the body's x axis that hold the footprint, for a quick yes
     double disc_x[4], disc_radius;
 } aisle_space;
@@ -48,7 +49,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap: "no" is a
-// proof; "yes" may be wrong by 1 / 64 of a cell. Adds its units.
+// proof; "yes" may be wrong by 1 / 8 of a cell. Adds its units.
 bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach, uint32_t *units);
 
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.

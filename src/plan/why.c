@@ -9,11 +9,12 @@
 #define ACROSS_CELLS 2.0 // how far to either side, in cells
 
 static void search_from(aisle_why *self, uint32_t open_from) {
-    aisle_seed_start_width(self->seed, self->space, self->start, self->goal, open_from);
+    aisle_seed_start_width(self->seed, self->space, self->start, self->goal, self->stride, open_from);
 }
 
-void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal) {
-    *self = (aisle_why){.seed = seed, .space = space, .start = start, .goal = goal};
+void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+                     uint32_t stride) {
+    *self = (aisle_why){.seed = seed, .space = space, .start = start, .goal = goal, .stride = stride};
     double reach = space->vehicle->inner_radius + space->vehicle->margin;
     aisle_seed_start_proof(seed, space, start, goal, reach);
     double cells = reach / space->grid->lattice.res + 2.0;
@@ -78,14 +79,14 @@ static void measure_gap(aisle_why *self) {
 }
 
 static void halve_doubt(aisle_why *self) {
-    bool settled = self->hi - self->lo <= 1U;
+    bool settled = self->hi - self->lo <= 1U || sqrt((double)self->hi) - sqrt((double)self->lo) < 0.5;
     self->stage = settled ? AISLE_WHY_WIDEST : AISLE_WHY_BISECT;
     search_from(self, settled ? self->lo : self->lo + (self->hi - self->lo) / 2U);
 }
 
 static aisle_status measure_widest(aisle_why *self) {
     aisle_seed *seed = self->seed;
-    aisle_status st = aisle_astar_path(&seed->search, seed->cells, AISLE_SEED_CELLS_MAX, &seed->cell_count);
+    aisle_status st = aisle_seed_refusal_path(seed);
     if (st == AISLE_OK) {
         measure_gap(self);
     }
@@ -101,6 +102,11 @@ static aisle_status next_search(aisle_why *self, bool found) {
         search_from(self, 1U);
         return AISLE_PARTIAL;
     case AISLE_WHY_ANY:
+        if (!found && self->stride > 1U) {
+            self->stride = 1U;
+            search_from(self, 1U);
+            return AISLE_BUSY;
+        }
         self->connected = found;
         self->lo = 1U;
         break;

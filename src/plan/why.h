@@ -4,12 +4,11 @@
 // connect? If not, no way
 //    exists at any heading. If it does, nothing is proved: the way may pass below the grid's resolution, or need
 //    manoeuvres.
-// 2. The widest way: bisection over the field's values for the largest one whose cells still connect; 1 fails too:
-// walled in.
+// 2. The widest way: bisection over the field's values for the largest one whose cells still connect, to half a cell,
+//    on every k-th cell first, on all if those do not connect at all; 1 fails too: walled in.
 // 3. Its narrowest place: the path's cells of least field value, each moved across the path to where the exact gap is
-// largest;
-//    the least of these is half the gap told.
-// Memory: none of its own. Time: up to about 14 grid searches, sliced.
+//    largest; the least of these is half the gap told.
+// Memory: none of its own. Time: about ten grid searches, sliced.
 #ifndef AISLE_PLAN_WHY_H
 #define AISLE_PLAN_WHY_H
 
@@ -27,6 +26,7 @@ typedef struct aisle_why {
     aisle_space *space;
     aisle_vec2 start, goal;
     aisle_why_stage stage;
+    uint32_t stride; // cells between neighbours of the searches for width
     uint32_t lo, hi; // field values: lo connects, hi does not
     bool proved;     // there is no way at this margin
     bool connected;  // for something narrower there is
@@ -35,7 +35,9 @@ typedef struct aisle_why {
     int32_t id; // of the obstacle there
 } aisle_why;
 
-void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal);
+// stride: cells, >= 1, for step 2.
+void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
+                     uint32_t stride);
 
 // AISLE_BUSY; AISLE_PARTIAL: step 1 has just ended, `proved` stands (once; call again for the rest); AISLE_OK: answered;
 // AISLE_ERR_CAPACITY: the open list is full.
