@@ -49,7 +49,9 @@ static inline long double judge_point_to_segment(judge_point p, judge_point a, j
     const long double sq = ex * ex + ey * ey;
     long double t = sq > 0.0L ? ((p.x - a.x) * ex + (p.y - a.y) * ey) / sq : 0.0L;
     t = t < 0.0L ? 0.0L : (t > 1.0L ? 1.0L : t);
-    return hypotl(p.x - (a.x + t * ex), p.y - (a.y + t * ey));
+    const long double dx = p.x - (a.x + t * ex);
+    const long double dy = p.y - (a.y + t * ey);
+    return sqrtl(dx * dx + dy * dy);
 }
 
 static inline bool judge_segments_cross(judge_point a, judge_point b, judge_point c, judge_point d) {
@@ -73,7 +75,7 @@ static inline long double judge_gap(const aisle_convex *a, const aisle_convex *b
     if (judge_is_inside(a->v, a->n, judge_of(b->v[0])) || judge_is_inside(b->v, b->n, judge_of(a->v[0]))) {
         return 0.0L;
     }
-    long double best = INFINITY;
+    long double best = (long double)INFINITY;
     for (uint32_t i = 0; i < a->n; i++) {
         const judge_point p = judge_of(a->v[i]);
         const judge_point q = judge_of(a->v[(i + 1U) % a->n]);

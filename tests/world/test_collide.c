@@ -134,7 +134,7 @@ static void test_hull_of_two_placements_is_what_the_body_sweeps(void) {
             end[i] = aisle_vec2_add(start[i], move);
         }
         const aisle_convex obstacle = {other, 5, 0.0};
-        long double nearest = INFINITY;
+        long double nearest = (long double)INFINITY;
         for (uint32_t k = 0; k <= SAMPLES; k++) {
             aisle_vec2 v[6];
             for (uint32_t i = 0; i < 6U; i++) {
@@ -152,7 +152,7 @@ static void test_hull_of_two_placements_is_what_the_body_sweeps(void) {
 }
 
 static void test_what_is_not_finite_or_too_far_or_too_many_touches_and_is_counted(void) {
-    const double bad[] = {NAN, INFINITY, -INFINITY, 1.1e5, -1e300};
+    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1.1e5, -1e300};
     count = (aisle_collide_count){0};
     const aisle_vec2 far_off[1] = {{500, 500}};
     const aisle_collide_body other = {far_off, NULL, 1, 0.0};
@@ -166,7 +166,7 @@ static void test_what_is_not_finite_or_too_far_or_too_many_touches_and_is_counte
         TEST_ASSERT_TRUE(aisle_collide(&other, &body, &count));
     }
     TEST_ASSERT_EQUAL_INT64(40, count.unfit);
-    const double radii[] = {NAN, -1.0, INFINITY, 2e5};
+    const double radii[] = {(double)NAN, -1.0, (double)INFINITY, 2e5};
     for (uint32_t i = 0; i < 4U; i++) {
         const aisle_vec2 a[1] = {{0, 0}};
         TEST_ASSERT_TRUE(aisle_collide(&(aisle_collide_body){a, NULL, 1, radii[i]}, &other, &count));

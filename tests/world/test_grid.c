@@ -60,10 +60,10 @@ static void test_a_lattice_over_nonsense_is_refused_as_empty(void) {
     const aisle_vec2 one = {1, 1};
     aisle_lattice l;
     TEST_ASSERT_FALSE(aisle_lattice_over(one, zero, 1.0, &l));
-    TEST_ASSERT_FALSE(aisle_lattice_over(zero, aisle_vec2_of(NAN, 1), 1.0, &l));
-    TEST_ASSERT_FALSE(aisle_lattice_over(zero, aisle_vec2_of(1, INFINITY), 1.0, &l));
+    TEST_ASSERT_FALSE(aisle_lattice_over(zero, aisle_vec2_of((double)NAN, 1), 1.0, &l));
+    TEST_ASSERT_FALSE(aisle_lattice_over(zero, aisle_vec2_of(1, (double)INFINITY), 1.0, &l));
     TEST_ASSERT_FALSE(aisle_lattice_over(zero, one, 0.0, &l));
-    TEST_ASSERT_FALSE(aisle_lattice_over(zero, one, NAN, &l));
+    TEST_ASSERT_FALSE(aisle_lattice_over(zero, one, (double)NAN, &l));
     TEST_ASSERT_EQUAL_UINT32(0, l.w);
     TEST_ASSERT_EQUAL_UINT32(0, l.h);
 }
@@ -77,13 +77,13 @@ static void test_cell_and_centre_are_inverse_and_outside_is_clamped(void) {
     }
     TEST_ASSERT_EQUAL_UINT32(1199, aisle_lattice_cell(&l, aisle_vec2_of(-1.0, 8.5), &inside)); // upper right border
     TEST_ASSERT_TRUE(inside);
-    TEST_ASSERT_EQUAL_UINT32(1199, aisle_lattice_cell(&l, aisle_vec2_of(1e300, INFINITY), &inside));
+    TEST_ASSERT_EQUAL_UINT32(1199, aisle_lattice_cell(&l, aisle_vec2_of(1e300, (double)INFINITY), &inside));
     TEST_ASSERT_FALSE(inside);
     TEST_ASSERT_EQUAL_UINT32(39, aisle_lattice_cell(&l, aisle_vec2_of(50.0, -9.0), &inside));
     TEST_ASSERT_FALSE(inside);
-    (void)aisle_lattice_cell(&l, aisle_vec2_of(NAN, 8.0), &inside);
+    (void)aisle_lattice_cell(&l, aisle_vec2_of((double)NAN, 8.0), &inside);
     TEST_ASSERT_FALSE(inside);
-    TEST_ASSERT_EQUAL_UINT32(0, aisle_lattice_cell(&l, aisle_vec2_of(-9.0, NAN), NULL));
+    TEST_ASSERT_EQUAL_UINT32(0, aisle_lattice_cell(&l, aisle_vec2_of(-9.0, (double)NAN), NULL));
 }
 
 static void test_begin_refuses_more_cells_than_carved_and_empty_lattices(void) {
@@ -92,7 +92,7 @@ static void test_begin_refuses_more_cells_than_carved_and_empty_lattices(void) {
     TEST_ASSERT_EQUAL(AISLE_ERR_CAPACITY, aisle_grid_begin(&grid, &(aisle_lattice){0, 0, 1, 65535, 65535}));
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_grid_begin(&grid, &(aisle_lattice){0, 0, 1, 65536, 1}));
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_grid_begin(&grid, &(aisle_lattice){0, 0, 1, 0, 5}));
-    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_grid_begin(&grid, &(aisle_lattice){0, 0, NAN, 5, 5}));
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_grid_begin(&grid, &(aisle_lattice){0, 0, (double)NAN, 5, 5}));
 }
 
 // ---- distance field
@@ -380,7 +380,7 @@ static void test_outside_has_no_gap_and_a_saturated_cell_no_upper_bound(void) {
     const aisle_vec2 middle = {26.05, 26.05};
     TEST_ASSERT_TRUE(isinf(aisle_grid_gap_upper(&big, middle)));
     TEST_ASSERT_DOUBLE_WITHIN(0.08, 25.6, aisle_grid_gap_lower(&big, middle));
-    const aisle_vec2 outside[] = {{-0.01, 5}, {5, -0.01}, {52.01, 5}, {5, 52.01}, {NAN, 5}};
+    const aisle_vec2 outside[] = {{-0.01, 5}, {5, -0.01}, {52.01, 5}, {5, 52.01}, {(double)NAN, 5}};
     for (uint32_t i = 0; i < 5U; i++) {
         TEST_ASSERT_EQUAL_DOUBLE(0.0, aisle_grid_gap_lower(&big, outside[i]));
         TEST_ASSERT_EQUAL_DOUBLE(0.0, aisle_grid_gap_upper(&big, outside[i]));

@@ -130,7 +130,7 @@ static void test_a_body_that_is_not_finite_is_in_contact(void) {
     scene.parts = 1;
     fix_set_bounds(&scene, 0, 0, 10, 10);
     fix_load(&scene);
-    const double bad[] = {NAN, INFINITY, -INFINITY};
+    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     for (uint32_t i = 0; i < 6U; i++) {
         aisle_vec2 v[2] = {{5, 5}, {6, 5}};
         *(i % 2U == 0U ? &v[i / 3U].x : &v[i / 3U].y) = bad[i % 3U];

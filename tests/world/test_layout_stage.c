@@ -214,10 +214,10 @@ static void spoil_tiles(aisle_layout_msg *m) {
     m->num_grid_chunks = -1;
 }
 static void spoil_bounds_nan(aisle_layout_msg *m) {
-    m->y_min = NAN;
+    m->y_min = (double)NAN;
 }
 static void spoil_bounds_infinite(aisle_layout_msg *m) {
-    m->x_max = INFINITY;
+    m->x_max = (double)INFINITY;
 }
 static void spoil_bounds_far(aisle_layout_msg *m) {
     m->y_max = 1.1e5;

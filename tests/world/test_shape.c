@@ -29,7 +29,7 @@ static void test_too_few_and_too_many_vertices_are_refused(void) {
 }
 
 static void test_not_finite_and_far_coordinates_are_refused_in_every_place(void) {
-    const double bad[] = {NAN, INFINITY, -INFINITY, 1.0000001e5, -1.0000001e5};
+    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1.0000001e5, -1.0000001e5};
     for (uint32_t b = 0; b < 5U; b++) {
         for (uint32_t i = 0; i < 8U; i++) {
             aisle_vec2 v[4];
@@ -186,7 +186,7 @@ static void test_gap_is_what_dense_sampling_of_both_outlines_sees(void) {
         gen_polygon(&rng, aisle_vec2_of(0, 0), 1, 0.6, 5, va);
         gen_polygon(&rng, aisle_vec2_of(gen_in(&rng, 2.5, 4.0), gen_in(&rng, -2.0, 2.0)), 1, 0.3, 5, vb);
         const double gap = aisle_convex_gap(&(aisle_convex){va, 5, 0.0}, &(aisle_convex){vb, 5, 0.0});
-        double seen = INFINITY;
+        double seen = (double)INFINITY;
         for (uint32_t i = 0; i < 5U * STEPS; i++) {
             const aisle_vec2 p = aisle_vec2_lerp(va[i / STEPS], va[(i / STEPS + 1U) % 5U], (i % STEPS) / (double)STEPS);
             for (uint32_t k = 0; k < 5U * STEPS; k++) {

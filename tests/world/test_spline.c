@@ -36,9 +36,9 @@ static void test_too_few_too_many_equal_and_not_finite_points_are_refused(void) 
                       aisle_spline_fit(&spline, AISLE_SPLINE_CUBIC, points, AISLE_SPLINE_POINTS_MAX + 1U));
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_spline_fit(&spline, AISLE_SPLINE_CUBIC, points, AISLE_SPLINE_POINTS_MAX));
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_spline_fit(&spline, AISLE_SPLINE_CUBIC, points, 1));
-    points[3].y = NAN;
+    points[3].y = (double)NAN;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_spline_fit(&spline, AISLE_SPLINE_LINEAR, points, 5));
-    points[3].y = INFINITY;
+    points[3].y = (double)INFINITY;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_spline_fit(&spline, AISLE_SPLINE_LINEAR, points, 5));
     const aisle_vec2 same[3] = {{1, 1}, {1, 1}, {1, 1 + 5e-7}};
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_spline_fit(&spline, AISLE_SPLINE_LINEAR, same, 3));
@@ -223,7 +223,7 @@ static long double judge_length_between(double from, double to, uint32_t steps) 
 }
 
 static double slowest(void) { // least speed over the mean one, which is about 1
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (uint32_t k = 0; k <= 2000U; k++) {
         const aisle_spline_sample s = aisle_spline_at(&spline, spline.u[spline.n - 1U] * k / 2000.0);
         least = fmin(least, hypot(s.d1.x, s.d1.y));
@@ -297,7 +297,7 @@ static void test_samples_carry_the_derivatives_of_their_place(void) {
     aisle_spline_resample(&spline, 100, samples);
     for (uint32_t i = 1; i + 1U < 100U; i++) { // find its u by looking everywhere
         double low = 0.0;
-        double best = INFINITY;
+        double best = (double)INFINITY;
         for (uint32_t k = 0; k <= 20000U; k++) {
             const double u = spline.u[5] * k / 20000.0;
             const double d = aisle_vec2_distance(aisle_spline_at(&spline, u).p, samples[i].p);
