@@ -36,5 +36,8 @@ def make_daemon(tmp_path):
 
 
 @pytest.fixture
-def daemon(make_daemon):
-    return make_daemon()
+def daemon(make_daemon, tmp_path):
+    """One with a fast heartbeat, to wait less."""
+    config = tmp_path / "fast.ini"
+    config.write_text("[daemon]\nstatus_hz = 50\ndiag_hz = 10\n")
+    return make_daemon("--config", str(config))

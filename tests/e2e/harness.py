@@ -38,7 +38,7 @@ class Daemon:
         self.diags: list[tuple[float, diag_t]] = []
         self.paths: list[tuple[float, path_t]] = []
         self.replies: list[path_t] = []
-        self.bus.subscribe("STATUS", status_t, lambda m: self.statuses.append((time.monotonic(), m)))
+        self.bus.subscribe("STATUS", status_t, lambda m: self.statuses.append((time.monotonic(), m)), 1000)
         self.bus.subscribe("DIAG", diag_t, lambda m: self.diags.append((time.monotonic(), m)))
         self.bus.subscribe("PATH", path_t, lambda m: self.paths.append((time.monotonic(), m)))
         self.bus.subscribe("REPLY", path_t, self.replies.append)

@@ -73,7 +73,7 @@ def test_goal_list_gets_a_proved_path_whose_lease_is_renewed(ready):
         plain.append(path.encode())
     assert len(set(plain)) == 1
     gaps = [b - a for (a, _), (b, _) in zip(renewals, renewals[1:])]
-    assert all(0.3 < gap < 0.9 for gap in gaps) and sum(gaps) / len(gaps) == pytest.approx(0.5, abs=0.1)
+    assert all(0.2 < gap < 1.0 for gap in gaps) and sum(gaps) / len(gaps) == pytest.approx(0.5, abs=0.1)
     path = renewals[-1][1]
     assert (path.goal_list_id, path.goal_list_revision, path.map_id, path.query_id) == (4, 1, 1, 0)
     assert path.pose_utime > 0 and path.waypoints[-1].goal_id == 11
@@ -127,7 +127,6 @@ def test_goal_list_without_a_pose_is_answered_with_that_reason(ready):
     assert (path.status, path.cause, path.goal_list_revision) == (path_t.NONE, status_t.NO_POSE, 1)
 
 
-@pytest.mark.xfail(reason="the list must be sent again with a higher revision once the pose is there", strict=False)
 def test_goal_list_without_a_pose_is_planned_when_the_pose_comes(ready):
     daemon, driver, _ = ready
     goals_first = goal_list(1, (19.0, 19.0))
@@ -152,12 +151,13 @@ def test_watch_shows_state_map_and_counters(ready):
         assert word in out
 
 
-def test_heartbeat_at_5_hz_and_diagnosis_at_1_hz(daemon):
-    daemon.bus.spin(1.0)
+def test_heartbeat_at_5_hz_and_diagnosis_at_1_hz(make_daemon):
+    daemon = make_daemon()
+    daemon.bus.spin(0.5)
     daemon.statuses.clear()
     daemon.diags.clear()
     daemon.bus.spin(5.0)
-    assert 23 <= len(daemon.statuses) <= 27
+    assert 22 <= len(daemon.statuses) <= 28
     assert 4 <= len(daemon.diags) <= 6
     seqs = [s.seq for _, s in daemon.statuses]
     assert seqs == list(range(seqs[0], seqs[0] + len(seqs)))
