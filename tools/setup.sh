@@ -28,7 +28,7 @@ missing_packages() {
 
 install_packages() {
     local missing as_root=()
-    command -v dpkg-query >/dev/null || die "no dpkg here; install by hand the likes of: $*, then set AISLE_SETUP_NO_APT=1"
+    command -v dpkg-query >/dev/null || die "no dpkg here; install the likes of: $*; then set AISLE_SETUP_NO_APT=1"
     mapfile -t missing < <(missing_packages "$@")
     [ ${#missing[@]} -gt 0 ] || return 0
     if [ "$(id -u)" != 0 ]; then
@@ -73,7 +73,7 @@ source_entries() {
     [ -n "$(ls -A "$out")" ] || die "no apt source of $codename found; set UNITY_ROOT to a copy of Unity"
 }
 
-# Unity 2.5 as the NTPsec source package carries it. apt checks the signatures; its lists and cache are private to build/.
+# Unity 2.5 as the NTPsec source package carries it. apt checks the signatures; its lists and cache stay in build/.
 fetch_unity() {
     local work=$PWD/build/deps/apt tarball
     say "fetching Unity from Debian's source package ntpsec"

@@ -39,7 +39,9 @@ class CSource(unittest.TestCase):
         self.assertEqual([(f.name, f.line, f.lines, f.nesting) for f in found], [("long_name", 2, 5, 1)])
 
     def test_braces_in_comments_strings_and_characters_do_not_count(self):
-        found = scan("void f(void) {\n // }\n /* }}} */\n puts(\"}\\\"}\");\n char c = '}';\n char d = '\\'';\n}\nint g(void) { return 1; }\n")
+        found = scan(
+            "void f(void) {\n // }\n /* }}} */\n puts(\"}\\\"}\");\n char c = '}';\n char d = '\\'';\n}\nint g(void) { return 1; }\n"
+        )
         self.assertEqual([(f.name, f.lines) for f in found], [("f", 7), ("g", 1)])
 
     def test_initialisers_and_types_are_not_blocks(self):
@@ -67,7 +69,9 @@ class CSource(unittest.TestCase):
         self.assertEqual([f.name for f in scan(text)], ["f"])
 
     def test_a_macro_of_several_lines_is_no_function(self):
-        self.assertEqual([f.name for f in scan("#define M(x) do { \\\n  x; \\\n} while (0)\nint f(void) { M(1); }\n")], ["f"])
+        self.assertEqual(
+            [f.name for f in scan("#define M(x) do { \\\n  x; \\\n} while (0)\nint f(void) { M(1); }\n")], ["f"]
+        )
 
     def test_missing_braces_are_found_and_present_ones_are_not(self):
         bad = "void f(int a) {\n if (a) g();\n for (;;) g();\n if (a) { } else g();\n while (a) ;\n do g(); while (a);\n}\n"
@@ -149,12 +153,19 @@ class Symbols(unittest.TestCase):
 class Stack(unittest.TestCase):
     @staticmethod
     def ci(frames, edges):
-        nodes = "".join(f'node: {{ title: "{t}" label: "{t}\\nx.c:1:1\\n{b} bytes ({k})\\n0 dynamic objects" }}\n' for t, b, k in frames)
+        nodes = "".join(
+            f'node: {{ title: "{t}" label: "{t}\\nx.c:1:1\\n{b} bytes ({k})\\n0 dynamic objects" }}\n' for t, b, k in frames
+        )
         return nodes + "".join(f'edge: {{ sourcename: "{a}" targetname: "{b}" label: "x.c:1:1" }}\n' for a, b in edges)
 
     def test_the_bound_is_the_deepest_chain(self):
         text = self.ci(
-            [("aisle_planner_step", 100, "static"), ("a.c:mid", 50, "static"), ("a.c:leaf", 7, "static"), ("wide", 56, "static")],
+            [
+                ("aisle_planner_step", 100, "static"),
+                ("a.c:mid", 50, "static"),
+                ("a.c:leaf", 7, "static"),
+                ("wide", 56, "static"),
+            ],
             [("aisle_planner_step", "a.c:mid"), ("a.c:mid", "a.c:leaf"), ("aisle_planner_step", "wide")],
         )
         graph, depth, deepest, problems = stack.analyse([text], {})

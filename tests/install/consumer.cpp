@@ -1,11 +1,10 @@
-// The same from C++: the headers compile and the names link.
+// The same from C++: the headers compile, the names link, a planner starts in memory of the program's own.
 #include <aisle/planner.h>
 #include <aisle/version.h>
 
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <vector>
+#include <memory>
 
 extern "C" void aisle_assert_failed(const char *, int, const char *) {
     std::abort();
@@ -13,9 +12,11 @@ extern "C" void aisle_assert_failed(const char *, int, const char *) {
 
 int main() {
     aisle_config config = {};
-    std::vector<std::max_align_t> block(aisle_planner_memsize(&config.limits) / sizeof(std::max_align_t) + 64);
+    const std::size_t size = aisle_planner_memsize(&config.limits);
+    const std::size_t whole = (size + AISLE_PLANNER_ALIGN - 1) / AISLE_PLANNER_ALIGN * AISLE_PLANNER_ALIGN;
+    std::unique_ptr<void, decltype(&std::free)> block(std::aligned_alloc(AISLE_PLANNER_ALIGN, whole), &std::free);
     aisle_planner *planner = nullptr;
-    const aisle_status status = aisle_planner_init(block.data(), block.size() * sizeof block[0], &config, &planner);
-    std::printf("aisle %s: init %d\n", AISLE_VERSION, static_cast<int>(status));
+    const aisle_status status = aisle_planner_init(block.get(), size, &config, &planner);
+    std::printf("aisle %s: %zu bytes, init %d\n", AISLE_VERSION, size, static_cast<int>(status));
     return status == AISLE_OK ? 0 : 1;
 }

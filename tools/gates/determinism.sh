@@ -14,8 +14,8 @@ fi
 
 build_variant() { # name compiler flags...
     local name=$1 compiler=$2 && shift 2
-    cmake -G Ninja -S . -B "build/det-$name" -DCMAKE_BUILD_TYPE=None -DCMAKE_C_COMPILER="$compiler" -DCMAKE_C_FLAGS="$*" \
-        -DAISLE_BUILD_TESTS=OFF -DAISLE_BUILD_JAVA=OFF >/dev/null
+    cmake -G Ninja -S . -B "build/det-$name" -DCMAKE_BUILD_TYPE=None -DCMAKE_C_COMPILER="$compiler" \
+        -DCMAKE_C_FLAGS="$*" -DAISLE_BUILD_TESTS=OFF -DAISLE_BUILD_JAVA=OFF >/dev/null
     cmake --build "build/det-$name" --parallel "$(nproc)" --target aisle-replay >"$work/build-$name.txt" 2>&1 || {
         cat "$work/build-$name.txt" && return 1
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every header compiles alone and twice: public ones as C99 and C++17, internal ones as C99, warnings as errors.
 
-    headers_alone.py --build DIR [--cc CC] [--cxx CXX]     DIR: a configured build tree, for the generated headers
+headers_alone.py --build DIR [--cc CC] [--cxx CXX]     DIR: a configured build tree, for the generated headers
 """
 
 import argparse

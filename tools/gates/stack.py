@@ -62,6 +62,11 @@ def plain(title):
     return title.rsplit(":", 1)[-1].split(".")[0]
 
 
+def short(title):
+    """A title without the folders of its file."""
+    return title.rsplit("/", 1)[-1]
+
+
 def read_inlets(text):
     """{file or external function: [callee...]} from lines "caller: callee callee"; # starts a comment."""
     inlets = {}
@@ -96,7 +101,7 @@ def resolve(graph, inlets):
             targets.discard(INDIRECT)
             names = listed(inlets, graph.file[title])
             if names is None:
-                problems.append(f"{title} calls through a pointer and inlets.txt does not say whom")
+                problems.append(f"{short(title)} calls through a pointer and inlets.txt does not say whom")
             for name in names or ():
                 found = graph.titles(name)
                 targets.update(found)
@@ -104,7 +109,7 @@ def resolve(graph, inlets):
                     problems.append(f"inlets.txt: {graph.file[title]} may call {name}, which is not there")
         for target in targets:
             if target not in graph.frame and plain(target) not in EXTERNAL:
-                problems.append(f"{title} calls {target}, whose stack is not known")
+                problems.append(f"{short(title)} calls {short(target)}, whose stack is not known")
         calls[title] = targets
     return calls, problems
 
@@ -152,7 +157,8 @@ def analyse(texts, inlets):
         graph.read(text)
     calls, problems = resolve(graph, inlets)
     depth, deepest, cycles = depths(graph, calls)
-    problems += [f"recursion: {' -> '.join(plain(t) for t in cycle)} ({graph.file[cycle[0]]})" for cycle in cycles]
+    for cycle in cycles:
+        problems.append(f"recursion: {' -> '.join(plain(t) for t in cycle)} ({short(graph.file[cycle[0]])})")
     problems += [f"{title} has a frame of no fixed size" for title in graph.unbounded]
     return graph, depth, deepest, problems
 
@@ -161,7 +167,7 @@ def report(graph, depth, deepest):
     """The table as lines, and the bound."""
     lines = ["worst frames (bytes):"]
     for title in sorted(graph.frame, key=lambda t: (-graph.frame[t], t))[:10]:
-        lines.append(f"  {graph.frame[title]:>7}  {title}")
+        lines.append(f"  {graph.frame[title]:>7}  {short(title)}")
     entries = {t: d for t, d in depth.items() if ":" not in t and t.startswith("aisle_planner_")} or depth
     lines.append("deepest chain from each entry (bytes):")
     for title in sorted(entries, key=lambda t: (-entries[t], t))[:20]:

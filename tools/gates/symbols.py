@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What libaisle.a needs from outside is a short, known list: no allocation, no clock, no I/O, no libm but sqrt, fabs, floor.
+"""What libaisle.a needs from outside is a short list: no allocation, clock or I/O, no libm but sqrt, fabs, floor.
 
     symbols.py LIBAISLE.A [--nm NM]
 
@@ -17,9 +17,10 @@ ALLOWED = {
     **dict.fromkeys(("sqrt", "sqrtf", "fabs", "fabsf", "floor", "floorf"), "libm, exact by IEEE 754"),
     **dict.fromkeys(("memcpy", "memset", "memmove", "memcmp", "strcmp", "strlen"), "C library, pure"),
 }
-# What compilers call by themselves: stack protector, position-independent code, integer and float helpers of small CPUs.
+# What compilers call by themselves: stack protector, position-independent code, arithmetic of small CPUs.
 COMPILER = re.compile(
-    r"_GLOBAL_OFFSET_TABLE_|__stack_chk_(fail|guard)|__aeabi_\w+|__(u?div|u?mod|mul|ashl|ashr|lshr|clz|ctz|popcount)[sdt]i[234]"
+    r"_GLOBAL_OFFSET_TABLE_|__stack_chk_(fail|guard)|__aeabi_\w+"
+    r"|__(u?div|u?mod|mul|ashl|ashr|lshr|clz|ctz|popcount)[sdt]i[234]"
 )
 
 

@@ -22,7 +22,8 @@ def problems_of(root):
         match = re.search(pattern, path.read_text()) if path.is_file() else None
         found[name] = match.group(1) if match else None
     stated = found["CMakeLists.txt"]
-    return [f"{name} says {value}, CMakeLists.txt {stated}" for name, value in found.items() if value != stated or not value]
+    odd = [name for name, value in found.items() if value != stated or not value]
+    return [f"{name} says {found[name]}, CMakeLists.txt {stated}" for name in odd]
 
 
 def main():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """No unfinished ends and no names of one machine in what is committed.
 
-Unfinished words in src, include, tools and tests; home and working directories of a machine and package mirrors anywhere.
+Unfinished words in code; home and working directories of a machine and package mirrors anywhere.
 Reads the files git tracks (or would track). Exit 1 with one line per find.
 """
 
@@ -37,7 +37,8 @@ def tracked(root):
     """Files git tracks or would track, as paths relative to the root."""
     run = subprocess.run(
         ["git", "-C", str(root), "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        check=True, capture_output=True,
+        check=True,
+        capture_output=True,
     )
     return sorted(Path(name.decode()) for name in run.stdout.split(b"\0") if name)
 
