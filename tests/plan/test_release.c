@@ -78,6 +78,8 @@ static void test_without_a_stamp_nothing_to_drive_leaves(void) {
     assert_refused();
     stamp = (aisle_stamp){right.crc ^ 1U, right.size};
     assert_refused();
+    stamp = (aisle_stamp){right.crc, right.size + 1U};
+    assert_refused();
     event = untouched;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &event));
     TEST_ASSERT_EQUAL_MEMORY(&untouched, &event, sizeof event);
@@ -105,11 +107,15 @@ static void test_a_revocation_needs_no_stamp(void) {
     assert_refused();
 }
 
-static void test_status_none_with_waypoints_and_ok_without_stay(void) {
+static void test_status_none_with_a_way_and_ok_without_stay(void) {
     stamp = (aisle_stamp){0, 0};
     path.status = AISLE_PATH_NONE;
+    path.num_waypoints = 2;
     path_seal();
     assert_refused();
+    path.num_waypoints = 1; // the place of the cause
+    path_seal();
+    TEST_ASSERT_EQUAL(AISLE_OK, release());
     path.num_waypoints = 0;
     for (int8_t status = AISLE_PATH_OK; status < AISLE_PATH_NONE; status++) {
         path.status = status;
@@ -139,7 +145,7 @@ int main(void) {
     RUN_TEST(test_without_a_stamp_nothing_to_drive_leaves);
     RUN_TEST(test_a_refused_path_gets_no_stamp_that_releases_it);
     RUN_TEST(test_a_revocation_needs_no_stamp);
-    RUN_TEST(test_status_none_with_waypoints_and_ok_without_stay);
+    RUN_TEST(test_status_none_with_a_way_and_ok_without_stay);
     RUN_TEST(test_the_certificate_is_the_crc_of_encoded_waypoints_and_revisions);
     return UNITY_END();
 }

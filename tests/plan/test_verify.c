@@ -194,6 +194,20 @@ static void test_goals_come_in_order_and_all(void) {
     goals[1] = swap;
     assert_fault(AISLE_VERIFY_GOAL);
     usual_path();
+    goals[0].id = 99; // the right place by another name
+    assert_fault(AISLE_VERIFY_GOAL);
+    usual_path();
+    path.waypoints[5].goal_id = path.waypoints[4].goal_id; // ends one goal early
+    path.waypoints[4].goal_id = path.waypoints[2].goal_id;
+    path.waypoints[2].flags = 0;
+    for (int i = 0; i < 2; i++) {
+        const aisle_waypoint_msg *w = &path.waypoints[4 + i];
+        goals[i] = (aisle_goal_msg){.id = w->goal_id, .x = w->x, .y = w->y, .theta = w->theta};
+    }
+    path_seal();
+    assert_fault(AISLE_VERIFY_GOAL);
+    TEST_ASSERT_EQUAL_UINT32(5, verify.fault_waypoint);
+    usual_path();
     path.waypoints[2].flags = 0; // passes the first unseen
     path_seal();
     assert_fault(AISLE_VERIFY_GOAL);

@@ -148,6 +148,9 @@ static void test_a_wait_is_no_turn(void) {
     path_end();
     vehicle.curvature_max = 0.5;
     assert_fault(AISLE_VERIFY_NONE);
+    path.waypoints[1].t = 0.0F; // but takes time
+    path_seal();
+    assert_fault_at(AISLE_VERIFY_TIME, 1);
 }
 
 static void test_heading_follows_the_motion(void) {
@@ -157,6 +160,15 @@ static void test_heading_follows_the_motion(void) {
     path.waypoints[STRAIGHT].theta += 0.2e-3;
     path_seal();
     assert_fault_at(AISLE_VERIFY_HEADING, STRAIGHT);
+}
+
+static void test_the_first_heading_counts_too(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_line(1.0);
+    path_end();
+    path.waypoints[0].theta = 3e-3;
+    path_seal();
+    assert_fault_at(AISLE_VERIFY_HEADING, 1);
 }
 
 static void test_a_corner_driven_through_is_a_heading_fault(void) {
@@ -334,6 +346,7 @@ int main(void) {
     RUN_TEST(test_a_limited_curvature_holds_and_rules_turns_out);
     RUN_TEST(test_a_wait_is_no_turn);
     RUN_TEST(test_heading_follows_the_motion);
+    RUN_TEST(test_the_first_heading_counts_too);
     RUN_TEST(test_a_corner_driven_through_is_a_heading_fault);
     RUN_TEST(test_half_a_circle_with_the_heading_round_the_other_way_is_refused);
     RUN_TEST(test_omni_heads_anywhere_but_takes_no_corner_at_speed);

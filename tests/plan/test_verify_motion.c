@@ -316,6 +316,26 @@ static void test_a_single_occupied_cell_stops(void) {
     }
 }
 
+static void test_what_lies_off_the_scan_is_out_of_bounds(void) {
+    vehicle_disc(0.3);
+    vehicle.margin = 0.0;
+    world_begin(0.0, 0.0, 10.04, 8.04, 0.0F); // 100 x 80 cells of 0.1 m: the bounds reach 0.04 m farther
+    world_scan(100, 80);
+    world_res = 0.1;
+    world_build();
+    const double ends[4][3] = {{9.69, 4.0, AISLE_VERIFY_NONE},
+                               {9.71, 4.0, AISLE_VERIFY_COLLISION},
+                               {5.0, 7.69, AISLE_VERIFY_NONE},
+                               {5.0, 7.71, AISLE_VERIFY_COLLISION}};
+    for (int i = 0; i < 4; i++) {
+        path_begin(5.0, 4.0, i < 2 ? 0.0 : 0.5 * AISLE_PI);
+        path_line(i < 2 ? ends[i][0] - 5.0 : ends[i][1] - 4.0);
+        path_end();
+        TEST_ASSERT_EQUAL((int)ends[i][2], verified());
+        TEST_ASSERT_EQUAL_INT32(i % 2 == 0 ? 0 : AISLE_LAYOUT_ID_BOUNDS, verify.fault_id);
+    }
+}
+
 static void test_a_diagonal_past_cells_looks_at_what_it_can_reach_only(void) {
     vehicle_disc(0.2);
     world_begin(0.0, 0.0, 8.0, 8.0, 0.0F);
@@ -390,14 +410,38 @@ static void test_fast_past_narrow_places_is_a_creep_fault_and_slow_is_not(void) 
 
 static void test_too_close_at_any_speed_is_a_collision_even_when_fast(void) {
     narrow_way();
-    path_begin(-4.0, 0.0, 0.0);
-    for (int i = 0; i < 16; i++) {
-        path_line(0.5);
-    }
+    path_begin(0.5, 0.0, 0.0);
+    path_line(0.5);
+    path_line(0.5);
     path_end();
-    path_drive(1.0);
-    vehicle.margin = 0.5;
+    path_drive(0.5);
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_CREEP, verified());
+    vehicle.margin = 0.35;
     TEST_ASSERT_EQUAL(AISLE_VERIFY_COLLISION, verified());
+}
+
+// Past a post at x = 0 the first piece or the second is fast at its far end alone, where the post is far away.
+static void test_a_piece_counts_with_the_faster_of_its_ends(void) {
+    for (int fast = 1; fast <= 2; fast++) {
+        world_begin(-6.0, -3.0, 6.0, 3.0, 0.25F);
+        int32_t id = world_box(AISLE_POLYGON_OBSTACLE, -0.01, 0.6, 0.01, 0.62);
+        world_build();
+        vehicle_disc(0.3);
+        path_begin(-2.0, 0.0, 0.0);
+        path_line(1.0);
+        path_line(1.0);
+        path_line(1.0);
+        path_line(1.0);
+        path_end();
+        path.waypoints[1].v = fast == 1 ? 0.5F : 0.3F;
+        path.waypoints[2].v = 0.3F;
+        path.waypoints[3].v = fast == 2 ? 0.5F : 0.3F;
+        path_retime(0.3);
+        path_seal();
+        TEST_ASSERT_EQUAL(AISLE_VERIFY_CREEP, verified());
+        TEST_ASSERT_EQUAL_UINT32(fast == 1 ? 2 : 3, verify.fault_waypoint);
+        TEST_ASSERT_EQUAL_INT32(id, verify.fault_id);
+    }
 }
 
 static void test_a_piece_from_rest_to_rest_counts_with_the_peak_its_time_gives(void) {
@@ -469,11 +513,13 @@ int main(void) {
     RUN_TEST(test_a_keepout_stops_and_other_zones_do_not);
     RUN_TEST(test_the_margin_is_kept_to_each_of_the_four_bounds);
     RUN_TEST(test_a_single_occupied_cell_stops);
+    RUN_TEST(test_what_lies_off_the_scan_is_out_of_bounds);
     RUN_TEST(test_a_diagonal_past_cells_looks_at_what_it_can_reach_only);
     RUN_TEST(test_a_place_to_stand_is_proved_too);
     RUN_TEST(test_the_last_pose_of_the_last_piece_counts);
     RUN_TEST(test_fast_past_narrow_places_is_a_creep_fault_and_slow_is_not);
     RUN_TEST(test_too_close_at_any_speed_is_a_collision_even_when_fast);
+    RUN_TEST(test_a_piece_counts_with_the_faster_of_its_ends);
     RUN_TEST(test_a_piece_from_rest_to_rest_counts_with_the_peak_its_time_gives);
     RUN_TEST(test_waiting_at_a_goal_does_not_slow_the_piece_behind_it);
     RUN_TEST(test_a_free_straight_metre_takes_one_interval_and_bends_few);
