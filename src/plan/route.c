@@ -244,7 +244,11 @@ static aisle_status step_seed(aisle_route *self, uint32_t units) {
         return refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
     }
     if (st == AISLE_PARTIAL) {
-        begin_leg(self, leg->attempt + 1U);
+        if (leg->attempt + 1U == ATTEMPTS_DISC) {
+            begin_why(self); // it goes on with the body's attempts if there can be a way
+        } else {
+            begin_leg(self, leg->attempt + 1U);
+        }
     } else if (st == AISLE_OK) {
         double arc = self->vehicle->outer_radius + self->vehicle->margin;
         aisle_taut_start(&self->taut, &self->space, &self->objective, arc, self->points + leg->first,

@@ -79,7 +79,7 @@ static uint32_t enter_proof(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
     aisle_seed *self = (aisle_seed *)ctx;
     (void)from;
     (void)dir;
-    bool open = aisle_space_cell_holds(self->space, to, self->proof_reach, &self->units);
+    bool open = aisle_space_cell_holds(self->space, to, self->proof_reach, self->proof_depth, &self->units);
     return open ? AISLE_ASTAR_FACTOR_ONE : AISLE_ASTAR_BARRED_CELL;
 }
 
@@ -318,7 +318,10 @@ static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 s
     AISLE_ASSERT(st == AISLE_OK);
 }
 
-void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach) {
+void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach,
+                            uint32_t depth) {
+    aisle_space_forget(space);
+    self->proof_depth = depth;
     self->proof_reach = reach;
     start_for_refusal(self, space, start, goal, 1U, enter_proof);
 }

@@ -12,7 +12,7 @@
 // then halving) at no higher cost than the cells' own way.
 //
 // Two more searches serve refusals (why.h) and give no polyline. PROOF: a cell is open if any point of it may keep
-// `reach` from every obstacle (exactly, down to 1 / 8 of a cell); if such cells do not connect, no way of that width
+// `reach` from every obstacle (exactly, down to 2^-depth of a cell); if such cells do not connect, no way of that width
 // exists. WIDTH: a cell is open from a field value on.
 //
 // Memory: search 2 bytes a cell, path 4 bytes * AISLE_SEED_CELLS_MAX, table. Time: O(cells expanded), sliced.
@@ -46,8 +46,9 @@ typedef struct aisle_seed {
     uint16_t *factor;   // [AISLE_SEED_TABLE] by field value
     uint32_t open_from; // WIDTH: least field value of an open cell
     double proof_reach; // PROOF: m
-    bool for_refusal;   // PROOF or WIDTH
-    uint32_t units;     // spent inside callbacks since the last step
+    uint32_t proof_depth;
+    bool for_refusal; // PROOF or WIDTH
+    uint32_t units;   // spent inside callbacks since the last step
     aisle_seed_phase phase;
     aisle_vec2 *points; // the polyline under way; the caller's [AISLE_SEED_POINTS_MAX]
     uint32_t point_count;
@@ -66,7 +67,8 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
 aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent);
 
 // Whether start and goal connect: step_refusal() answers as step() does. stride as above, [1, sides of the grid].
-void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach);
+void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, double reach,
+                            uint32_t depth);
 void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                             uint32_t open_from);
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent);

@@ -11,7 +11,6 @@
 #define STRAY_STEP 1e-3     // m, of piece_clearance's subdivision: from straight ways
 #define OVERREACH_STEP 4e-3 // m, and of the hull beyond the sweep of a body that turns
 #define SUBDIVISIONS_MAX 4096U
-#define HOLDS_DEPTH 3U                    // halvings of a cell
 #define HALF_DIAGONAL 0.70710678118654752 // of a square of side 1
 
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
@@ -53,6 +52,10 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
     self->beyond = self->grid->lattice.res * (solid ? -0.5 : HALF_DIAGONAL);
     self->lever = 0.0;
     measure_body(self);
+    aisle_space_forget(self);
+}
+
+void aisle_space_forget(aisle_space *self) {
     uint32_t cells = self->grid->lattice.w * self->grid->lattice.h;
     AISLE_ASSERT(cells <= self->cells);
     memset(self->cell_free, 0, ((size_t)cells / 64U + 1U) * sizeof(uint64_t));
@@ -95,32 +98,26 @@ static double point_gap(const aisle_space *self, aisle_vec2 p, double cap) {
     return aisle_layout_gap(self->layout, &point, cap, NULL);
 }
 
-bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach, uint32_t *units) {
-    double side = self->grid->lattice.res;
-    double centre_gap = sqrt((double)self->grid->field[cell]) * side;
-    if (centre_gap - side * HALF_DIAGONAL >= reach) {
-        return true;
-    }
-    if (centre_gap + self->beyond + side * HALF_DIAGONAL < reach) {
-        return false;
-    }
-    aisle_vec2 open[3 * HOLDS_DEPTH + 1]; // centres of squares in doubt; their depths beside them
-    uint32_t depth[3 * HOLDS_DEPTH + 1];
+// Branch and bound over the squares of a cell, depth first.
+static bool holds_exactly(const aisle_space *self, aisle_vec2 centre, double reach, uint32_t depth_max,
+                          uint32_t *units) {
+    aisle_vec2 open[3U * AISLE_SPACE_DEPTH_MAX + 1U]; // centres of squares in doubt; their depths beside them
+    uint32_t depth[3U * AISLE_SPACE_DEPTH_MAX + 1U];
     uint32_t count = 1;
-    open[0] = aisle_lattice_centre(&self->grid->lattice, cell);
+    open[0] = centre;
     depth[0] = 0;
     while (count > 0U) {
         count--;
         aisle_vec2 c = open[count];
         uint32_t d = depth[count];
-        double half = 0.5 * side / (double)(1U << d);
-        double gap = point_gap(self, c, reach);
+        double half = 0.5 * self->grid->lattice.res / (double)(1U << d);
+        double best = point_gap(self, c, reach) + 2.0 * half * HALF_DIAGONAL; // of any point of the square
         *units += 1U;
-        if (gap >= reach || (d == HOLDS_DEPTH && gap + 2.0 * half * HALF_DIAGONAL >= reach)) {
-            return true;
-        }
-        if (gap + 2.0 * half * HALF_DIAGONAL < reach) {
+        if (best < reach) {
             continue;
+        }
+        if (d == depth_max || best >= reach + 2.0 * half * HALF_DIAGONAL) {
+            return true;
         }
         for (int k = 0; k < 4; k++) {
             double dx = (k & 1) != 0 ? 0.5 * half : -0.5 * half;
@@ -130,6 +127,27 @@ bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach
         }
     }
     return false;
+}
+
+bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units) {
+    AISLE_ASSERT(depth <= AISLE_SPACE_DEPTH_MAX);
+    double side = self->grid->lattice.res;
+    double centre_gap = sqrt((double)self->grid->field[cell]) * side;
+    if (centre_gap - side * HALF_DIAGONAL >= reach) {
+        return true;
+    }
+    if (centre_gap + self->beyond + side * HALF_DIAGONAL < reach) {
+        return false;
+    }
+    uint64_t bit = 1ULL << (cell % 64U);
+    if ((self->cell_free[cell / 64U] & bit) != 0U) {
+        return true;
+    }
+    if (!holds_exactly(self, aisle_lattice_centre(&self->grid->lattice, cell), reach, depth, units)) {
+        return false;
+    }
+    self->cell_free[cell / 64U] |= bit;
+    return true;
 }
 
 // The exact footprint driven straight from a to b, heading along it.

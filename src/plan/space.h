@@ -13,7 +13,8 @@
 #include "robot/vehicle.h"
 #include "world/layout.h"
 
-#define AISLE_SPACE_SLACK 5e-4  // m
+#define AISLE_SPACE_SLACK 5e-4 // m
+#define AISLE_SPACE_DEPTH_MAX 3U
 #define AISLE_SPACE_PIECE 0.5   // m, longest sweep given to one exact test
 #define AISLE_CLEARANCE_CAP 2.0 // m, a larger clearance is told as this
 
@@ -26,7 +27,7 @@ typedef struct aisle_space {
     aisle_space_mode mode;
     double keep;         // margin + slack, m
     double reach;        // FREE_TURN: outer radius + keep; ALONG: inner radius + keep (necessary, not sufficient)
-    uint64_t *cell_free; // [cells / 64 + 1] bits: the exact test of this centre said free
+    uint64_t *cell_free; // [cells / 64 + 1] bits: an exact test of this cell said yes
     uint32_t cells;
     double beyond; // m, what an obstacle may lie beyond the centre of its occupied cell; negative where cells are solid
     double lever;  // m, farthest footprint point from the origin, its rounding left out
@@ -48,9 +49,11 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
 // Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b: false.
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
-// Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap: "no" is a
-// proof; "yes" may be wrong by 1 / 8 of a cell. Adds its units.
-bool aisle_space_cell_holds(const aisle_space *self, uint32_t cell, double reach, uint32_t *units);
+// Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap, `depth` halvings
+// deep, at most AISLE_SPACE_DEPTH_MAX: "no" is a proof; "yes" may be wrong by 2^-depth of a cell's half diagonal. A yes is
+// remembered until forget(), so reach and depth stay the same meanwhile.
+bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units);
+void aisle_space_forget(aisle_space *self); // O(cells / 64)
 
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.
 bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);

@@ -5,8 +5,9 @@
 #include <math.h>
 
 #define WINDOW 8U        // path cells looked at on either side of the narrowest one
-#define ACROSS 40        // tries on either side of a cell
 #define ACROSS_CELLS 2.0 // how far to either side, in cells
+#define ACROSS 16        // tries on either side of a cell, then as many again around the best
+#define ALONG 16         // places looked at to either side of the best cell, up to its neighbours
 
 static void search_from(aisle_why *self, uint32_t open_from) {
     aisle_seed_start_width(self->seed, self->space, self->start, self->goal, self->stride, open_from);
@@ -15,28 +16,37 @@ static void search_from(aisle_why *self, uint32_t open_from) {
 void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
                      uint32_t stride) {
     *self = (aisle_why){.seed = seed, .space = space, .start = start, .goal = goal, .stride = stride};
-    double reach = space->vehicle->inner_radius + space->vehicle->margin;
-    aisle_seed_start_proof(seed, space, start, goal, reach);
-    double cells = reach / space->grid->lattice.res + 2.0;
+    self->reach = space->vehicle->inner_radius + space->vehicle->margin;
+    aisle_seed_start_proof(seed, space, start, goal, self->reach, 0);
+    double cells = self->reach / space->grid->lattice.res + 2.0;
     self->hi = (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX);
 }
 
-// Largest exact gap of a point on the line across the path at p; where and to what.
-static double best_across(const aisle_why *self, aisle_vec2 p, aisle_vec2 across, aisle_vec2 *at, int32_t *id) {
-    double best = -1.0;
-    double step = ACROSS_CELLS * self->space->grid->lattice.res / ACROSS;
+typedef struct place {
+    aisle_vec2 at;
+    double gap; // m
+    int32_t id; // of what is nearest
+} place;
+
+// The place of the largest exact gap among those `step` apart on a line about p.
+static place widest_on_line(aisle_why *self, aisle_vec2 p, aisle_vec2 direction, double step) {
+    place best = {.gap = -1.0};
     for (int k = -ACROSS; k <= ACROSS; k++) {
-        aisle_vec2 q = aisle_vec2_add(p, aisle_vec2_scale(across, step * k));
-        aisle_convex point = {&q, 1U, 0.0};
-        int32_t near;
-        double gap = aisle_layout_gap(self->space->layout, &point, AISLE_CLEARANCE_CAP, &near);
-        if (gap > best) {
-            best = gap;
-            *at = q;
-            *id = near;
-        }
+        place here = {.at = aisle_vec2_add(p, aisle_vec2_scale(direction, step * k))};
+        aisle_convex point = {&here.at, 1U, 0.0};
+        here.gap = aisle_layout_gap(self->space->layout, &point, AISLE_CLEARANCE_CAP, &here.id);
+        best = here.gap > best.gap ? here : best;
     }
+    self->seed->units += 2U * ACROSS + 1U;
     return best;
+}
+
+// Where a point on the way at p may pass with the largest gap, moved across the way.
+static place best_across(aisle_why *self, aisle_vec2 p, aisle_vec2 along) {
+    aisle_vec2 across = {-along.y, along.x};
+    double step = ACROSS_CELLS * self->space->grid->lattice.res / ACROSS;
+    place coarse = widest_on_line(self, p, across, step);
+    return widest_on_line(self, coarse.at, across, step / ACROSS);
 }
 
 static uint32_t narrowest_cell(const aisle_seed *seed) {
@@ -49,33 +59,38 @@ static uint32_t narrowest_cell(const aisle_seed *seed) {
     return best;
 }
 
+// Direction of the way about its cell i.
+static aisle_vec2 direction_at(const aisle_seed *seed, uint32_t i) {
+    const aisle_lattice *lattice = &seed->space->grid->lattice;
+    aisle_vec2 a = aisle_lattice_centre(lattice, seed->cells[i > 2U ? i - 2U : 0U]);
+    aisle_vec2 b =
+        aisle_lattice_centre(lattice, seed->cells[i + 2U < seed->cell_count ? i + 2U : seed->cell_count - 1U]);
+    double length = aisle_vec2_distance(a, b);
+    return length > 0.0 ? aisle_vec2_scale(aisle_vec2_sub(b, a), 1.0 / length) : aisle_vec2_of(1.0, 0.0);
+}
+
 static void measure_gap(aisle_why *self) {
     const aisle_seed *seed = self->seed;
     const aisle_lattice *lattice = &self->space->grid->lattice;
     uint32_t middle = narrowest_cell(seed);
     uint32_t first = middle > WINDOW ? middle - WINDOW : 0U;
     uint32_t last = middle + WINDOW < seed->cell_count ? middle + WINDOW : seed->cell_count - 1U;
-    double least = AISLE_CLEARANCE_CAP;
-    self->place = aisle_lattice_centre(lattice, seed->cells[middle]);
+    place least = {.at = aisle_lattice_centre(lattice, seed->cells[middle]), .gap = AISLE_CLEARANCE_CAP};
     for (uint32_t i = first; i <= last; i++) {
-        uint32_t before = i > 2U ? i - 2U : 0U;
-        uint32_t after = i + 2U < seed->cell_count ? i + 2U : seed->cell_count - 1U;
-        aisle_vec2 a = aisle_lattice_centre(lattice, seed->cells[before]);
-        aisle_vec2 b = aisle_lattice_centre(lattice, seed->cells[after]);
-        double length = aisle_vec2_distance(a, b);
-        aisle_vec2 along =
-            length > 0.0 ? aisle_vec2_scale(aisle_vec2_sub(b, a), 1.0 / length) : aisle_vec2_of(1.0, 0.0);
-        aisle_vec2 at = self->place;
-        int32_t id = 0;
-        double gap = best_across(self, aisle_lattice_centre(lattice, seed->cells[i]), aisle_vec2_of(-along.y, along.x),
-                                 &at, &id);
-        if (gap < least) {
-            least = gap;
-            self->place = at;
-            self->id = id;
-        }
+        place here = best_across(self, aisle_lattice_centre(lattice, seed->cells[i]), direction_at(seed, i));
+        middle = here.gap < least.gap ? i : middle;
+        least = here.gap < least.gap ? here : least;
     }
-    self->width = 2.0 * least;
+    aisle_vec2 centre = aisle_lattice_centre(lattice, seed->cells[middle]);
+    aisle_vec2 along = direction_at(seed, middle);
+    double step = (double)self->stride * lattice->res / ALONG;
+    for (int k = -ALONG; k <= ALONG; k++) { // thin walls lie between the cells' centres
+        place here = best_across(self, aisle_vec2_add(centre, aisle_vec2_scale(along, step * k)), along);
+        least = here.gap < least.gap ? here : least;
+    }
+    self->place = least.at;
+    self->id = least.id;
+    self->width = 2.0 * least.gap;
 }
 
 static void halve_doubt(aisle_why *self) {
@@ -93,14 +108,26 @@ static aisle_status measure_widest(aisle_why *self) {
     return st;
 }
 
-// Takes the end of one search; starts the next one (AISLE_BUSY, AISLE_PARTIAL after the first) or ends.
+static aisle_status begin_widths(aisle_why *self, bool proved) {
+    self->proved = proved;
+    self->stage = AISLE_WHY_ANY;
+    search_from(self, 1U);
+    return AISLE_PARTIAL;
+}
+
+// Takes the end of one search; starts the next one (AISLE_BUSY, AISLE_PARTIAL after the proof) or ends.
 static aisle_status next_search(aisle_why *self, bool found) {
     switch (self->stage) {
+    case AISLE_WHY_ROUGH:
+        if (found) {
+            self->stage = AISLE_WHY_PROVE;
+            aisle_seed_start_proof(self->seed, self->space, self->start, self->goal, self->reach,
+                                   AISLE_SPACE_DEPTH_MAX);
+            return AISLE_BUSY;
+        }
+        return begin_widths(self, true);
     case AISLE_WHY_PROVE:
-        self->proved = !found;
-        self->stage = AISLE_WHY_ANY;
-        search_from(self, 1U);
-        return AISLE_PARTIAL;
+        return begin_widths(self, !found);
     case AISLE_WHY_ANY:
         if (!found && self->stride > 1U) {
             self->stride = 1U;

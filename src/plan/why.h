@@ -2,7 +2,7 @@
 //
 // 1. Proof: does an optimistic grid (seed.h, PROOF) for the disc that the footprint holds plus the margin still
 // connect? If not, no way
-//    exists at any heading. If it does, nothing is proved: the way may pass below the grid's resolution, or need
+//    exists at any heading. Roughly first, since most gaps are far too narrow or far too wide. If it does, nothing is proved: the way may pass below the grid's resolution, or need
 //    manoeuvres.
 // 2. The widest way: bisection over the field's values for the largest one whose cells still connect, to half a cell,
 //    on every k-th cell first, on all if those do not connect at all; 1 fails too: walled in.
@@ -15,7 +15,8 @@
 #include "plan/seed.h"
 
 typedef enum aisle_why_stage {
-    AISLE_WHY_PROVE,  // does the optimistic grid connect at the margin?
+    AISLE_WHY_ROUGH,  // does the optimistic grid connect at the margin, to a cell?
+    AISLE_WHY_PROVE,  // and to an eighth of a cell?
     AISLE_WHY_ANY,    // does anything connect?
     AISLE_WHY_BISECT, // how wide at most?
     AISLE_WHY_WIDEST  // the widest way itself
@@ -26,6 +27,7 @@ typedef struct aisle_why {
     aisle_space *space;
     aisle_vec2 start, goal;
     aisle_why_stage stage;
+    double reach;    // m, of the disc the footprint holds, margin included
     uint32_t stride; // cells between neighbours of the searches for width
     uint32_t lo, hi; // field values: lo connects, hi does not
     bool proved;     // there is no way at this margin
