@@ -42,6 +42,10 @@ def main() -> int:
             f"disc robots solved: {len(discs)}, legs {len(ratios)}: ratio median {offline.median(ratios):.4f}, "
             f"worst {max(ratios):.4f} (targets {TARGET_MEDIAN}, {TARGET_WORST})"
         )
+    for r in rows:
+        if not r["disc"] and r["solved"] == r["legs"]:
+            outer = sum(leg["upper"] for leg in optima[r["scenario"]]["legs"])
+            print(f"{r['scenario']}: {r['length'] / outer:.4f} of the optimum of the footprint's outer circle")
     if args.json is not None:
         args.json.write_text(json.dumps(rows, indent=1))
     return 0 if all(r["solved"] == r["legs"] and not r["faults"] for r in rows) else 1
