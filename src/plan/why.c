@@ -155,5 +155,8 @@ aisle_status aisle_why_step(aisle_why *self, uint32_t units, uint32_t *spent) {
     if (st == AISLE_BUSY || st == AISLE_ERR_CAPACITY) {
         return st;
     }
-    return next_search(self, st == AISLE_OK);
+    st = next_search(self, st == AISLE_OK);
+    *spent += self->seed->units; // for measuring the gap
+    self->seed->units = 0;
+    return st;
 }
