@@ -57,8 +57,8 @@ typedef struct aisle_verify_request {
     const aisle_vehicle *vehicle;
     const uint8_t *bytes; // encoded path_t, stays put until the end
     size_t size;
-    aisle_pose2 start;              // where the motion must begin, within 1e-6
-    const aisle_goal_msg *goals;    // [num_goals] to be reached in this order, flags GOAL with their ids
+    aisle_pose2 start;           // where the motion must begin, within 1e-6
+    const aisle_goal_msg *goals; // [num_goals] to be reached in this order, flags GOAL with their ids
     uint32_t num_goals;
 } aisle_verify_request;
 
@@ -70,10 +70,15 @@ typedef enum aisle_verify_fault {
     AISLE_VERIFY_COLLISION, // footprint + margin not free on a piece
     AISLE_VERIFY_CREEP,     // too fast for the clearance
     AISLE_VERIFY_TIME,      // times do not rise or do not fit the speeds
-    AISLE_VERIFY_SPEED, AISLE_VERIFY_ACCELERATION, AISLE_VERIFY_LATERAL, AISLE_VERIFY_TURN_RATE,
-    AISLE_VERIFY_CURVATURE, AISLE_VERIFY_HEADING, AISLE_VERIFY_REST,
-    AISLE_VERIFY_SUMS,        // length, duration, bound or clearance_min do not fit the waypoints
-    AISLE_VERIFY_CERTIFICATE  // not the crc of these waypoints and revisions
+    AISLE_VERIFY_SPEED,
+    AISLE_VERIFY_ACCELERATION,
+    AISLE_VERIFY_LATERAL,
+    AISLE_VERIFY_TURN_RATE,
+    AISLE_VERIFY_CURVATURE,
+    AISLE_VERIFY_HEADING,
+    AISLE_VERIFY_REST,
+    AISLE_VERIFY_SUMS,       // length, duration, bound or clearance_min do not fit the waypoints
+    AISLE_VERIFY_CERTIFICATE // not the crc of these waypoints and revisions
 } aisle_verify_fault;
 
 // What a proof leaves behind. Only verify.c writes one; release() checks it.
@@ -83,25 +88,25 @@ typedef struct aisle_stamp {
 } aisle_stamp;
 
 typedef struct aisle_verify_piece { // from waypoint i-1 to i; verify_piece.c
-    aisle_vec2 from, unit;   // first end; direction of the chord
-    double chord;            // m, >= 0
-    double phi;              // half the angle the course turns by, rad, [0, pi/2]; 0: straight
-    double side;             // 1: to the left, -1: to the right
-    double length;           // m
-    double course;           // direction of the chord, rad; 0 without one
-    double theta, turn;      // heading at the first end and its change, rad
-    double turn_other;       // the other way round if rounding decides between them; else = turn
-    double time;             // s, dwell taken off
-    double peak;             // m/s, fastest on it
+    aisle_vec2 from, unit;          // first end; direction of the chord
+    double chord;                   // m, >= 0
+    double phi;                     // half the angle the course turns by, rad, [0, pi/2]; 0: straight
+    double side;                    // 1: to the left, -1: to the right
+    double length;                  // m
+    double course;                  // direction of the chord, rad; 0 without one
+    double theta, turn;             // heading at the first end and its change, rad
+    double turn_other;              // the other way round if rounding decides between them; else = turn
+    double time;                    // s, dwell taken off
+    double peak;                    // m/s, fastest on it
     bool on_spot, reverse;
 } aisle_verify_piece;
 
 typedef struct aisle_verify_motion { // intervals of the piece in hand; verify_motion.c
-    double lo;                     // where the interval in front begins, [0, 1] of the piece
-    double hi[AISLE_VERIFY_DEPTH]; // where those not yet proved end, the next on top
-    uint32_t depth;                // entries in hi
-    double turn;                   // way round in hand
-    double margin, growth;         // m: always kept; to be proved on this piece (>= margin)
+    double lo;                       // where the interval in front begins, [0, 1] of the piece
+    double hi[AISLE_VERIFY_DEPTH];   // where those not yet proved end, the next on top
+    uint32_t depth;                  // entries in hi
+    double turn;                     // way round in hand
+    double margin, growth;           // m: always kept; to be proved on this piece (>= margin)
 } aisle_verify_motion;
 
 typedef enum aisle_verify_phase {
@@ -146,7 +151,8 @@ aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spe
 // The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of status NONE with
 // at most one waypoint (nothing to drive: it marks the place of the cause). utime and valid_until_utime may have changed since the proof (lease). AISLE_ERR_ARG otherwise,
 // *event untouched. stamp may be NULL (nothing proved). O(size).
-aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp, aisle_event *event);
+aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
+                           aisle_event *event);
 
 // crc32 over the waypoints as encoded (in order), then over path_revision, query_id, goal_list_id, goal_list_revision, map_id, map_revision,
 // vehicle_revision as 4 big-endian bytes each. The path's `certificate`.

@@ -316,6 +316,19 @@ static void test_a_single_occupied_cell_stops(void) {
     }
 }
 
+static void test_a_straight_path_may_be_as_close_as_2_micrometres_above_the_margin(void) {
+    vehicle_disc(0.25);
+    world_begin(-5.0, -5.0, 5.0, 5.0, 0.25F);
+    int32_t id = world_box(AISLE_POLYGON_OBSTACLE, -1.0, 0.5, 1.0, 0.75);
+    world_build();
+    path_begin(-4.0, 0.0, 0.0);
+    path_line(8.0);
+    path_end();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, fault_with_margin(0.25 - 2e-6));
+    (void)fault_with_margin(0.25);
+    assert_collision(id, 1);
+}
+
 static void test_what_lies_off_the_scan_is_out_of_bounds(void) {
     vehicle_disc(0.3);
     vehicle.margin = 0.0;
@@ -513,6 +526,7 @@ int main(void) {
     RUN_TEST(test_a_keepout_stops_and_other_zones_do_not);
     RUN_TEST(test_the_margin_is_kept_to_each_of_the_four_bounds);
     RUN_TEST(test_a_single_occupied_cell_stops);
+    RUN_TEST(test_a_straight_path_may_be_as_close_as_2_micrometres_above_the_margin);
     RUN_TEST(test_what_lies_off_the_scan_is_out_of_bounds);
     RUN_TEST(test_a_diagonal_past_cells_looks_at_what_it_can_reach_only);
     RUN_TEST(test_a_place_to_stand_is_proved_too);
