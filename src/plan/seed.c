@@ -6,6 +6,7 @@
 #include <math.h>
 
 #define SEARCH_BATCH 32U // nodes
+#define WIDEST_ROOM 0.5  // m beyond the least clearance from which on the widest way does not care
 
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_astar_carve(&self->search, arena, limits->cells, limits->open_nodes);
@@ -73,6 +74,23 @@ static uint32_t enter_width(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
     (void)dir;
     return self->space->grid->field[grid_cell(self, to)] >= self->open_from ? AISLE_ASTAR_FACTOR_ONE
                                                                             : AISLE_ASTAR_BARRED_CELL;
+}
+
+// As enter_width, but dear near the least clearance: the way keeps to the middle wherever there is more room, so that
+// only true narrow places are left on it.
+static uint32_t enter_widest(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
+    const aisle_seed *self = (const aisle_seed *)ctx;
+    (void)from;
+    (void)dir;
+    const aisle_grid *grid = self->space->grid;
+    uint32_t field = grid->field[grid_cell(self, to)];
+    if (field < self->open_from) {
+        return AISLE_ASTAR_BARRED_CELL;
+    }
+    double spare = (sqrt((double)field) - sqrt((double)self->open_from)) * grid->lattice.res / WIDEST_ROOM;
+    double near = spare < 1.0 ? 1.0 - spare : 0.0;
+    double span = (double)(AISLE_ASTAR_FACTOR_MAX - AISLE_ASTAR_FACTOR_ONE);
+    return AISLE_ASTAR_FACTOR_ONE + (uint32_t)(span * near * near);
 }
 
 static uint32_t enter_proof(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
@@ -330,6 +348,12 @@ void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 sta
                             uint32_t open_from) {
     self->open_from = open_from;
     start_for_refusal(self, space, start, goal, stride, enter_width);
+}
+
+void aisle_seed_start_widest(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
+                             uint32_t open_from) {
+    self->open_from = open_from;
+    start_for_refusal(self, space, start, goal, stride, enter_widest);
 }
 
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent) {

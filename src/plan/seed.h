@@ -71,6 +71,9 @@ void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 sta
                             uint32_t depth);
 void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                             uint32_t open_from);
+// The same cells, but the way keeps off the least clearance where it can.
+void aisle_seed_start_widest(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
+                             uint32_t open_from);
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent);
 
 // After step_refusal() said AISLE_OK: cells[0..cell_count) of the grid, from start to goal. AISLE_ERR_CAPACITY: too many.

@@ -94,9 +94,13 @@ static void measure_gap(aisle_why *self) {
 }
 
 static void halve_doubt(aisle_why *self) {
-    bool settled = self->hi - self->lo <= 1U || sqrt((double)self->hi) - sqrt((double)self->lo) < 0.5;
-    self->stage = settled ? AISLE_WHY_WIDEST : AISLE_WHY_BISECT;
-    search_from(self, settled ? self->lo : self->lo + (self->hi - self->lo) / 2U);
+    if (self->hi - self->lo <= 1U || sqrt((double)self->hi) - sqrt((double)self->lo) < 0.5) {
+        self->stage = AISLE_WHY_WIDEST;
+        aisle_seed_start_widest(self->seed, self->space, self->start, self->goal, self->stride, self->lo);
+        return;
+    }
+    self->stage = AISLE_WHY_BISECT;
+    search_from(self, self->lo + (self->hi - self->lo) / 2U);
 }
 
 static aisle_status measure_widest(aisle_why *self) {

@@ -6,6 +6,7 @@
 //    manoeuvres.
 // 2. The widest way: bisection over the field's values for the largest one whose cells still connect, to half a cell,
 //    on every k-th cell first, on all if those do not connect at all; 1 fails too: walled in.
+//    The way itself then keeps off that least clearance wherever there is room.
 // 3. Its narrowest place: the path's cells of least field value, each moved across the path to where the exact gap is
 //    largest; the least of these is half the gap told.
 // Memory: none of its own. Time: about ten grid searches, sliced.

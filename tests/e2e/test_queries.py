@@ -100,7 +100,6 @@ def test_a_gap_too_narrow_is_named_with_its_width(daemon, data):
     assert math.hypot(answer["place"][0] - 7.5, answer["place"][1] - 11.8) < 0.5  # the opening
 
 
-@pytest.mark.xfail(reason="a corner passed at the same clearance may be named instead of the gap", strict=False)
 def test_the_gap_named_on_a_real_map_is_where_the_way_is_narrow(daemon, data):
     yaml = data / "ros_maps" / "nav2_warehouse.yaml"
     daemon.aisle("map", yaml)
