@@ -5,8 +5,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/setup.sh gcovr
 cmake --preset coverage >/dev/null
-cmake --build --preset coverage --parallel "$(nproc)"
+cmake --build --preset coverage --parallel "$(nproc)" >/dev/null
 find build/coverage -name '*.gcda' -delete
-ctest --preset coverage --parallel "$(nproc)" --output-log build/coverage/ctest.txt | tail -n 3
-gcovr --root . --object-directory build/coverage --filter src/ --filter include/ --exclude-unreachable-branches \
-    --html-details build/coverage/report.html --print-summary
+ctest --preset coverage --parallel "$(nproc)" --quiet --output-log build/coverage/ctest.txt ||
+    echo "tests failed: build/coverage/ctest.txt"
+gcovr --root . --filter src/ --filter include/ --exclude-directories '.*(CompilerId|/install/).*' \
+    --exclude-unreachable-branches --txt --html-details build/coverage/report.html --print-summary build/coverage
