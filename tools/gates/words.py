@@ -18,7 +18,7 @@ MACHINE = re.compile(
     r"(?<![\w.:/])/(?:hom[e]/\w|roo[t]/\w|User[s]/\w|wor[k]/|far[m]/)|\.librar[y]/|\.\./share[d]\b"
     r"|https?://[^\s]*(?:/debia[n](?![\w-])|/simpl[e]/|registr[y]\.|/artifactor[y])"
 )
-CODE = ("src", "include", "tools", "tests", "cmake", "lcmtypes", ".ci")
+CODE = ("src", "include", "examples", "tools", "tests", "cmake", "lcmtypes", ".ci")
 
 
 def problems_of(path, text):
