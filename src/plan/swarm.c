@@ -88,43 +88,26 @@ static double polyline_length(const aisle_vec2 *points, uint32_t count) {
     return length;
 }
 
-// Point at arc length s along the polyline.
-static aisle_vec2 along(const aisle_vec2 *points, uint32_t count, double s) {
-    for (uint32_t i = 0; i + 1U < count; i++) {
-        double leg = aisle_vec2_distance(points[i], points[i + 1U]);
-        if (s <= leg && leg > 0.0) {
-            return aisle_vec2_lerp(points[i], points[i + 1U], s / leg);
-        }
-        s -= leg;
-    }
-    return points[count - 1U];
-}
-
-// Via-points: every inner point of the polyline, and more in between where legs are long, in proportion.
+// Via-points: every inner point of the polyline, and more in between until there are enough, by arc length.
 static void place_vias(aisle_swarm *self, const aisle_vec2 *points, uint32_t count, double length) {
     uint32_t inner = count - 2U;
-    double wished = floor(length / VIA_SPACING);
-    uint32_t vias = wished < (double)AISLE_SWARM_VIAS ? (uint32_t)wished : AISLE_SWARM_VIAS;
-    vias = vias < 2U ? 2U : vias;
+    double wished = aisle_clamp(floor(length / VIA_SPACING), 2.0, (double)AISLE_SWARM_VIAS);
+    double spare = aisle_max(wished - (double)inner, 0.0);
+    double given = 0.0;
+    double s = 0.0;
     self->vias = 0;
-    double spacing = length / (double)(vias + 1U);
-    uint32_t spare = inner < vias ? vias - inner : 0U;
     for (uint32_t i = 0; i + 1U < count; i++) {
-        double leg = aisle_vec2_distance(points[i], points[i + 1U]);
-        double more = floor(leg / spacing);
-        uint32_t extra = more < (double)spare ? (uint32_t)more : spare;
-        spare -= extra;
-        for (uint32_t k = 1; k <= extra; k++) {
-            self->base[self->vias++] = aisle_vec2_lerp(points[i], points[i + 1U], (double)k / (double)(extra + 1U));
+        s += aisle_vec2_distance(points[i], points[i + 1U]);
+        double extra = floor(spare * s / length + 0.5) - given; // length >= 0.2
+        given += extra;
+        for (double k = 1.0; k <= extra; k += 1.0) {
+            self->base[self->vias++] = aisle_vec2_lerp(points[i], points[i + 1U], k / (extra + 1.0));
         }
         if (i + 2U < count) {
             self->base[self->vias++] = points[i + 1U];
         }
     }
-    if (self->vias == 0U) {
-        self->base[self->vias++] = along(points, count, 0.5 * length);
-    }
-    AISLE_ASSERT(self->vias <= AISLE_SWARM_VIAS);
+    AISLE_ASSERT(self->vias >= 1U && self->vias <= AISLE_SWARM_VIAS);
 }
 
 static void configure(aisle_swarm *self, const aisle_options_msg *options, double length) {
