@@ -152,6 +152,12 @@ const int64_t *aisle_planner_counters(const aisle_planner *self);
 // Rows of the memory table, largest pools by name; their bytes sum up to memsize(). Returns the count.
 size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, size_t capacity);
 
+// Reads an event's bytes. AISLE_ERR_DATA: not a path_t (never for bytes of an event). O(waypoints).
+aisle_status aisle_path_decode(const void *bytes, size_t size, aisle_path_msg *path);
+
+// Goes on with the crc32 a layout_t carries, over the polygons of one part after those of the parts before (crc, at first 0).
+uint32_t aisle_layout_crc32(uint32_t crc, const aisle_layout_msg *part);
+
 // Text of a cause of status_msg/path_msg ("NO_PATH"); "?" for an unknown one. O(1).
 const char *aisle_cause_name(int16_t cause);
 

@@ -100,3 +100,7 @@ void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id) {
         aisle_planner_refuse(self, &self->mission.request, &why, NULL, 0);
     }
 }
+
+aisle_status aisle_path_decode(const void *bytes, size_t size, aisle_path_msg *path) {
+    return aisle_msg_decode(AISLE_MSG_PATH, bytes, size, path, NULL);
+}

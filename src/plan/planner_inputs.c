@@ -1,5 +1,6 @@
 #include "plan/planner_state.h"
 
+#include "base/check.h"
 #include "base/crc32.h"
 
 #include <math.h>
@@ -374,4 +375,16 @@ aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const ais
         self->cause = self->cause_kind == input->kind ? 0 : self->cause;
     }
     return st;
+}
+
+uint32_t aisle_layout_crc32(uint32_t crc, const aisle_layout_msg *part) {
+    AISLE_ASSERT(part->num_polygons >= 0 && part->num_polygons <= AISLE_LAYOUT_MAX_POLYGONS);
+    for (int16_t i = 0; i < part->num_polygons; i++) {
+        uint8_t bytes[512]; // a polygon of 16 vertices takes 271
+        size_t size = 0;
+        if (aisle_msg_encode_body(AISLE_MSG_POLYGON, &part->polygons[i], bytes, sizeof bytes, &size) == AISLE_OK) {
+            crc = aisle_crc32(crc, bytes, size);
+        }
+    }
+    return crc;
 }
