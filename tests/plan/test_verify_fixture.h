@@ -512,7 +512,7 @@ static bool boxes_are_within(const long double *a, const long double *b, long do
 
 // Gap between the footprint at a pose and everything that stands; negative: that deep out of the bounds.
 static long double pose_gap(const long double *pose) {
-    long double v[16][2], box[4], c = cosl(pose[2]), s = sinl(pose[2]);
+    long double v[16][2] = {{0.0L}}, box[4], c = cosl(pose[2]), s = sinl(pose[2]);
     int n = (int)vehicle.n, first = nearest_area < world_count ? nearest_area : 0;
     for (int i = 0; i < n; i++) {
         long double x = (long double)vehicle.footprint[i].x, y = (long double)vehicle.footprint[i].y;
