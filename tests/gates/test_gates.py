@@ -13,6 +13,7 @@ import csource  # noqa: E402
 import functions  # noqa: E402
 import headers_alone  # noqa: E402
 import levels  # noqa: E402
+import readme  # noqa: E402
 import stack  # noqa: E402
 import symbols  # noqa: E402
 import version  # noqa: E402
@@ -190,6 +191,15 @@ class Stack(unittest.TestCase):
         text = self.ci([("a", 8, "static"), ("x.c:support", 30, "static")], [("a", "ccdMPRIntersect")])
         _, depth, _, problems = stack.analyse([text], {"ccdMPRIntersect": ["support"]})
         self.assertEqual((depth["a"], problems), (38 + stack.EXTERNAL["ccdMPRIntersect"], []))
+
+
+class Readme(unittest.TestCase):
+    TEXT = "see `src/base/arena.h`\n```c\nint x;\n```\n![a](docs/a.png)\n"
+
+    def test_the_example_must_be_the_file_and_named_files_must_be_there(self):
+        self.assertEqual([], readme.faults(self.TEXT, "int x;\n", lambda name: True))
+        self.assertEqual(1, len(readme.faults(self.TEXT, "int y;\n", lambda name: True)))
+        self.assertEqual(2, len(readme.faults(self.TEXT, "int x;\n", lambda name: False)))
 
 
 class Words(unittest.TestCase):
