@@ -6,8 +6,7 @@
 #ifndef AISLE_BASE_CHECK_H
 #define AISLE_BASE_CHECK_H
 
-// Supplied by the program (aisled, tests, firmware); must not return.
-void aisle_assert_failed(const char *file, int line, const char *condition);
+#include "aisle/status.h" // aisle_assert_failed()
 
 #define AISLE_ASSERT(condition) ((condition) ? (void)0 : aisle_assert_failed(__FILE__, __LINE__, #condition))
 
