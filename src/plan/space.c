@@ -52,6 +52,11 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
     self->beyond = self->grid->lattice.res * (solid ? -0.5 : HALF_DIAGONAL);
     self->lever = 0.0;
     measure_body(self);
+    double res = self->grid->lattice.res;
+    self->far_clearance = aisle_max(vehicle->creep_clearance, vehicle->outer_radius + self->keep);
+    double cells =
+        (self->far_clearance + vehicle->outer_radius) / res + 2.0; // 2: to the cell's rim, and from its centre
+    self->far_field = (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX);
     aisle_space_forget(self);
 }
 
@@ -229,14 +234,28 @@ bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_ve
     return aisle_vec2_distance(a, b) > 1e-9 && sweep_free(self, a, b, AISLE_SPACE_ALONG, units);
 }
 
+bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *units) {
+    double need = self->vehicle->outer_radius + self->keep;
+    *units += 1U;
+    return aisle_grid_gap_lower(self->grid, p) >= need || capsule_free(self, p, p, need);
+}
+
 double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, int32_t *id) {
     aisle_vec2 points[AISLE_SHAPE_VERTICES_MAX];
     aisle_convex body = aisle_vehicle_place(self->vehicle, pose, 0.0, points);
     return aisle_layout_gap(self->layout, &body, cap, id);
 }
 
+bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p) {
+    bool inside;
+    return self->grid->field[aisle_lattice_cell(&self->grid->lattice, p, &inside)] >= self->far_field && inside;
+}
+
 // Distance from p to occupied cells, interpolated between the four centres around p.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p) {
+    if (aisle_space_is_far(self, p)) {
+        return self->far_clearance;
+    }
     const aisle_lattice *lattice = &self->grid->lattice;
     double fx = aisle_clamp((p.x - lattice->x0) / lattice->res - 0.5, 0.0, (double)(lattice->w - 1U));
     double fy = aisle_clamp((p.y - lattice->y0) / lattice->res - 0.5, 0.0, (double)(lattice->h - 1U));

@@ -29,6 +29,8 @@ typedef struct aisle_space {
     double reach;        // FREE_TURN: outer radius + keep; ALONG: inner radius + keep (necessary, not sufficient)
     uint64_t *cell_free; // [cells / 64 + 1] bits: an exact test of this cell said yes
     uint32_t cells;
+    uint32_t far_field;   // a cell of this field value or more is far: nothing there depends on the clearance
+    double far_clearance; // m, what is told of far places
     double beyond; // m, what an obstacle may lie beyond the centre of its occupied cell; negative where cells are solid
     double lever;  // m, farthest footprint point from the origin, its rounding left out
     // ALONG: discs on the body's x axis that hold the footprint, for a quick yes
@@ -49,6 +51,9 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
 // Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b: false.
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
+// Can the body turn to any heading at p?
+bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *units);
+
 // Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap, `depth` halvings
 // deep, at most AISLE_SPACE_DEPTH_MAX: "no" is a proof; "yes" may be wrong by 2^-depth of a cell's half diagonal. A yes is
 // remembered until forget(), so reach and depth stay the same meanwhile.
@@ -61,8 +66,11 @@ bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b,
 // Gap between the footprint at pose and the nearest obstacle (exact), at most cap; *id that obstacle.
 double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, int32_t *id);
 
-// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius. Smooth and
-// cheap; for costs only.
+// Is p so far from everything that the margin is kept at every heading and no objective cares? One look at the field.
+bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p);
+
+// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius; far_clearance where far.
+// Cheap; for costs only.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
 // Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at

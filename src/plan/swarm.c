@@ -5,9 +5,9 @@
 
 #include <math.h>
 
-#define SPREAD 0.15F       // of the box, where the other particles start
-#define VIA_SPACING 2.0    // m, wished between via-points
-#define SAMPLE_SPACING 0.1 // m, wished between samples
+#define SPREAD 0.15F        // of the box, where the other particles start
+#define VIA_SPACING 2.0     // m, wished between via-points
+#define SAMPLE_SPACING 0.15 // m, wished between samples
 #define SEED_DEFAULT 20180617U
 
 void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
@@ -20,6 +20,10 @@ void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
 static double shortfall(aisle_swarm *self, const aisle_spline_sample *at, double *clearance) {
     const aisle_space *space = self->space;
     const aisle_vehicle *vehicle = space->vehicle;
+    if (aisle_space_is_far(space, at->p)) {
+        *clearance = space->far_clearance;
+        return 0.0;
+    }
     *clearance = aisle_space_clearance_about(space, at->p);
     double lower = aisle_grid_gap_lower(space->grid, at->p);
     if (lower - vehicle->outer_radius >= space->keep) {
