@@ -6,6 +6,7 @@
 #include <math.h>
 
 #define SEARCH_BATCH 32U // nodes
+#define CORNER_STEPS 32  // places tried along a leg
 #define WIDEST_ROOM 0.5  // m beyond the least clearance from which on the widest way does not care
 
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits) {
@@ -263,8 +264,61 @@ static aisle_status straighten(aisle_seed *self, uint32_t units) {
     return self->at < end ? AISLE_BUSY : AISLE_OK;
 }
 
-// Node by node: where it stops must depend on the units alone, and a node costs more than one.
-// Expands nodes until `units` are spent; the inlets spend too, so in small batches.
+// ---- corners
+
+// Puts corner i at p if the ways to and from it are free, a neighbour left out if need be. False: they are not.
+static bool put_corner(aisle_seed *self, uint32_t i, aisle_vec2 p) {
+    static const uint32_t left_out[][2] = {{0, 0}, {1, 0}, {0, 1}};
+    for (int k = 0; k < 3; k++) {
+        uint32_t before = left_out[k][0];
+        uint32_t after = left_out[k][1];
+        if (i < 1U + before || i + 1U + after >= self->point_count ||
+            !aisle_space_sweep_free(self->space, self->points[i - 1U - before], p, &self->units) ||
+            !aisle_space_sweep_free(self->space, p, self->points[i + 1U + after], &self->units)) {
+            continue;
+        }
+        self->points[i - before] = p;
+        self->point_count -= before + after;
+        for (uint32_t to = i - before + 1U; before + after > 0U && to < self->point_count; to++) {
+            self->points[to] = self->points[to + 1U];
+        }
+        self->at = i - before + 1U;
+        return true;
+    }
+    return false;
+}
+
+// Moves corner i along the line from `along` through it, beyond it, to where the body can turn. False: nowhere.
+static bool move_corner(aisle_seed *self, uint32_t i, aisle_vec2 along) {
+    aisle_vec2 b = self->points[i];
+    double length = aisle_vec2_distance(along, b);
+    if (length < 1e-6) {
+        return false;
+    }
+    aisle_vec2 unit = aisle_vec2_scale(aisle_vec2_sub(b, along), 1.0 / length);
+    double reach = 2.0 * self->space->vehicle->outer_radius;
+    for (int k = 1; k <= CORNER_STEPS; k++) {
+        aisle_vec2 p = aisle_vec2_add(b, aisle_vec2_scale(unit, reach * k / CORNER_STEPS));
+        if (aisle_space_turn_free(self->space, p, &self->units) && put_corner(self, i, p)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static aisle_status widen_corners(aisle_seed *self, uint32_t units) {
+    while (self->at + 1U < self->point_count && self->units < units) {
+        uint32_t i = self->at++;
+        if (!aisle_space_turn_free(self->space, self->points[i], &self->units) &&
+            !move_corner(self, i, self->points[i + 1U])) {
+            (void)move_corner(self, i, self->points[i - 1U]);
+        }
+    }
+    return self->at + 1U < self->point_count ? AISLE_BUSY : AISLE_OK;
+}
+
+// Expands nodes until `units` are spent: in small batches, since the inlets spend too, and always the same ones, so that
+// the slices make no difference.
 static aisle_status search(aisle_seed *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;
     while (st == AISLE_BUSY && self->units < units) {
@@ -297,18 +351,25 @@ static aisle_status begin_straightening(aisle_seed *self) {
 }
 
 aisle_status aisle_seed_step(aisle_seed *self, uint32_t units, uint32_t *spent) {
-    AISLE_ASSERT(self->phase == AISLE_SEED_SEARCH || self->phase == AISLE_SEED_STRAIGHTEN);
+    AISLE_ASSERT(self->phase > AISLE_SEED_IDLE && self->phase < AISLE_SEED_DONE);
     aisle_status st = AISLE_BUSY;
     if (self->phase == AISLE_SEED_SEARCH) {
         st = search(self, units);
         if (st == AISLE_OK) {
             st = begin_straightening(self);
         }
-    } else {
+    } else if (self->phase == AISLE_SEED_STRAIGHTEN) {
         st = straighten(self, units);
-        if (st == AISLE_OK) {
-            self->phase = AISLE_SEED_DONE;
+        if (st == AISLE_OK && self->space->mode == AISLE_SPACE_ALONG) {
+            self->phase = AISLE_SEED_CORNERS;
+            self->at = 1;
+            st = AISLE_BUSY;
         }
+    } else {
+        st = widen_corners(self, units);
+    }
+    if (st == AISLE_OK) {
+        self->phase = AISLE_SEED_DONE;
     }
     *spent += self->units;
     self->units = 0;

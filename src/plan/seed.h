@@ -10,6 +10,8 @@
 // along the way, within AISLE_SEED_JOIN m: a station may be too tight to turn in.
 // Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping,
 // then halving) at no higher cost than the cells' own way.
+// Corners (ALONG): one where the body cannot turn is moved outwards along one of its legs, within the turning disc's
+// diameter, to where it can, a neighbour left out if need be; one that finds no such place stays.
 //
 // Two more searches serve refusals (why.h) and give no polyline. PROOF: a cell is open if any point of it may keep
 // `reach` from every obstacle (exactly, down to 2^-depth of a cell); if such cells do not connect, no way of that width
@@ -32,6 +34,7 @@ typedef enum aisle_seed_phase {
     AISLE_SEED_IDLE,
     AISLE_SEED_SEARCH,
     AISLE_SEED_STRAIGHTEN,
+    AISLE_SEED_CORNERS,
     AISLE_SEED_DONE
 } aisle_seed_phase;
 

@@ -66,6 +66,11 @@ static bool free_between(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
     return aisle_space_sweep_free(self->space, a, b, &self->units);
 }
 
+// May a corner be put at p? A body held along its motion must be able to turn there.
+static bool may_turn(aisle_taut *self, aisle_vec2 p) {
+    return self->space->mode == AISLE_SPACE_FREE_TURN || aisle_space_turn_free(self->space, p, &self->units);
+}
+
 static void delete_point(aisle_taut *self, uint32_t i) {
     for (uint32_t k = i; k + 1U < self->count; k++) {
         self->points[k] = self->points[k + 1U];
@@ -105,7 +110,7 @@ static double slide_limit(aisle_taut *self, aisle_vec2 b, aisle_vec2 anchor, ais
     while (bad - good > stop) {
         double t = 0.5 * (good + bad);
         aisle_vec2 p = aisle_vec2_lerp(b, anchor, t);
-        if (outbound ? free_between(self, p, other) : free_between(self, other, p)) {
+        if (may_turn(self, p) && (outbound ? free_between(self, p, other) : free_between(self, other, p))) {
             good = t;
         } else {
             bad = t;
@@ -129,7 +134,7 @@ static void slide_some(aisle_taut *self, uint32_t i, uint32_t to, uint32_t other
         aisle_vec2 p = aisle_vec2_lerp(b, self->points[to], t);
         double after = leg_cost(self, p, self->points[to]) + leg_cost(self, p, self->points[other]);
         bool outbound = to < i;
-        if (after < before * (1.0 - AISLE_TAUT_GAIN) &&
+        if (after < before * (1.0 - AISLE_TAUT_GAIN) && may_turn(self, p) &&
             (outbound ? free_between(self, p, self->points[other]) : free_between(self, self->points[other], p))) {
             self->points[i] = p;
             return;
@@ -151,7 +156,9 @@ static bool try_cut(aisle_taut *self, uint32_t i) {
     double bad = 1.0;
     for (int k = 0; k < 10; k++) {
         double t = 0.5 * (good + bad);
-        if (free_between(self, aisle_vec2_lerp(b, a, t), aisle_vec2_lerp(b, c, t))) {
+        aisle_vec2 p = aisle_vec2_lerp(b, a, t);
+        aisle_vec2 q = aisle_vec2_lerp(b, c, t);
+        if (may_turn(self, p) && may_turn(self, q) && free_between(self, p, q)) {
             good = t;
         } else {
             bad = t;

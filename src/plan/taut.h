@@ -2,6 +2,7 @@
 //
 // Local moves on one point b between a and c, each tested by straight free sweeps and kept only if the cost falls:
 //     remove b;  slide b towards a (then b-c must be free);  slide b towards c;  cut the corner at b by two points.
+// ALONG: points go only where the turning disc fits, since the body must turn there.
 // Cost: the objective's density along the legs, less what a corner arc of radius `arc_radius` saves at each point (2 T
 // - R phi with T the tangent length), so that points already on one arc are not split for nothing. For pure length the
 // slides go as far as they may (halving down to 0.5 mm): a point that cannot move has both legs touching the same round

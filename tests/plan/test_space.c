@@ -117,6 +117,25 @@ static void test_free_turn_stands_for_every_heading(void) {
     }
 }
 
+static void test_turn_free_is_told_just_where_the_turning_disc_keeps_the_margin(void) {
+    int free_places = 0;
+    hall_rectangle(1.2, 0.5, 0.05F);
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        random_hall(&rng);
+        open_space(AISLE_SPACE_ALONG);
+        for (int k = 0; k < 200; k++) {
+            aisle_vec2 p = {uniform(&rng, 0.0, 12.0), uniform(&rng, 0.0, 9.0)};
+            double gap = (double)hall_disc_gap(p.x, p.y, hall_vehicle.outer_radius) - space.keep;
+            bool free = aisle_space_turn_free(&space, p, &units);
+            TEST_ASSERT_FALSE(free && gap < -1e-9);
+            TEST_ASSERT_FALSE(!free && gap > 1e-9);
+            free_places += free;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(100, free_places);
+}
+
 static void test_a_wall_thinner_than_a_cell_stops_a_point_sized_robot(void) {
     hall_begin(4.0, 4.0);
     hall_add(2.0, 0.0, 2.001, 4.0);
@@ -189,6 +208,7 @@ int main(void) {
     RUN_TEST(test_a_disc_sweep_is_free_just_where_dense_samples_keep_the_margin);
     RUN_TEST(test_a_body_sweep_is_free_just_where_dense_samples_keep_the_margin);
     RUN_TEST(test_free_turn_stands_for_every_heading);
+    RUN_TEST(test_turn_free_is_told_just_where_the_turning_disc_keeps_the_margin);
     RUN_TEST(test_a_wall_thinner_than_a_cell_stops_a_point_sized_robot);
     RUN_TEST(test_every_test_adds_its_units);
     RUN_TEST(test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_every_seed);
