@@ -1,0 +1,327 @@
+#include "plan/route.h"
+
+#include "door.h"
+
+#include "base/rng.h"
+
+enum { SEEDS = 10 };
+
+static aisle_route route;
+static aisle_request request;
+static aisle_path_msg head;
+static aisle_path_msg answer;
+
+static void open_with(const aisle_limits *limits) {
+    aisle_arena arena = hall_arena(24U << 20);
+    memset(&route, 0, sizeof route);
+    aisle_route_carve(&route, &arena, limits);
+    route.budget_default = 1000000U;
+    hall_open(&arena, 0.05F);
+}
+
+static void open_hall(void) {
+    open_with(&hall_limits);
+}
+
+static void ask(int8_t planner, double x0, double y0, double x1, double y1) {
+    request = (aisle_request){.is_query = true, .query_id = 5, .map_id = 1, .num_goals = 1};
+    request.options.planner = planner;
+    request.start = (aisle_goal_msg){.x = x0, .y = y0, .tolerance_theta = 4.0F};
+    request.goals[0] = (aisle_goal_msg){.id = 11, .x = x1, .y = y1, .tolerance_theta = 4.0F};
+}
+
+// Steps to the end; returns how often a first path was announced. No step overdraws by more than a piece.
+static int finish(uint32_t slice) {
+    int announced = 0;
+    aisle_status st;
+    do {
+        uint32_t before = route.spent;
+        st = aisle_route_step(&route, slice);
+        TEST_ASSERT_TRUE(slice > UINT32_MAX - 4096U || route.spent - before <= slice + 4096U);
+        if (st == AISLE_PARTIAL) {
+            TEST_ASSERT_NOT_NULL(aisle_route_answer(&route));
+            announced += 1;
+        }
+    } while (st != AISLE_OK);
+    return announced;
+}
+
+static int plan(uint32_t slice) {
+    head = (aisle_path_msg){.boot_id = 3, .path_revision = 8, .utime = 100, .t0_utime = 100};
+    aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
+    return finish(slice);
+}
+
+// The answer decoded and judged; fails where there is none.
+static const aisle_proof *proof(void) {
+    const aisle_proof *proof = aisle_route_answer(&route);
+    TEST_ASSERT_NOT_NULL(proof);
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, &answer, NULL));
+    door_judge(&answer);
+    return proof;
+}
+
+static void refused_with(int16_t cause) {
+    TEST_ASSERT_NULL(aisle_route_answer(&route));
+    TEST_ASSERT_EQUAL_INT16(cause, route.cause.cause);
+}
+
+static void pillar_hall(void) {
+    hall_begin(12.0, 8.0);
+    hall_add(5.0, 3.0, 7.0, 5.0);
+    open_hall();
+}
+
+void setUp(void) {
+    hall_rectangle(1.0, 0.7, 0.1F);
+    pillar_hall();
+}
+void tearDown(void) {}
+
+static double uniform(aisle_rng *rng, double lo, double hi) {
+    return lo + (hi - lo) * (double)aisle_rng_float(rng);
+}
+
+static void random_hall(aisle_rng *rng) {
+    hall_begin(12.0, 8.0);
+    for (int i = 0; i < 6; i++) {
+        double x = uniform(rng, 1.5, 9.0);
+        double y = uniform(rng, 0.5, 6.5);
+        hall_add(x, y, x + uniform(rng, 0.3, 1.5), y + uniform(rng, 0.3, 1.5));
+    }
+    open_hall();
+}
+
+// ---- tests
+
+static void test_auto_is_never_worse_than_the_seed_nor_than_astar_and_every_answer_is_free(void) {
+    int better = 0;
+    int ways = 0;
+    for (uint64_t s = 0; s < SEEDS; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        random_hall(&rng);
+        int8_t objective = (int8_t)(s % 4U);
+        ask(AISLE_OPTIONS_ASTAR, 0.8, uniform(&rng, 1.0, 7.0), 11.2, uniform(&rng, 1.0, 7.0));
+        request.options.objective = objective;
+        (void)plan(1000);
+        if (aisle_route_answer(&route) == NULL) {
+            continue;
+        }
+        double seed = proof()->value;
+        TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_ASTAR, answer.planner);
+        request.options.planner = AISLE_OPTIONS_AUTO;
+        (void)plan(1000);
+        const aisle_proof *best = proof();
+        TEST_ASSERT_TRUE(best->value <= seed * (1.0 + 1e-9));
+        TEST_ASSERT_EQUAL(best == &route.better, answer.planner == AISLE_OPTIONS_PSO);
+        TEST_ASSERT_EQUAL_INT32(best == &route.better ? 9 : 8, answer.path_revision);
+        better += best->value < 0.99 * seed;
+        ways += 1;
+    }
+    TEST_ASSERT_TRUE(ways >= 7 && better >= 2);
+}
+
+static void test_the_first_proof_is_announced_once_before_the_end(void) {
+    ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 10.0, 4.0);
+    TEST_ASSERT_EQUAL_INT(1, plan(500));
+    (void)proof();
+    TEST_ASSERT_TRUE(route.swarm_evals > 0);
+    ask(AISLE_OPTIONS_ASTAR, 2.0, 4.0, 10.0, 4.0);
+    TEST_ASSERT_EQUAL_INT(0, plan(500)); // it is the answer
+    TEST_ASSERT_EQUAL_INT64(0, route.swarm_evals);
+}
+
+static void test_pso_by_name_takes_the_swarms_path_in_both_interpolations(void) {
+    for (int8_t interpolation = 0; interpolation < 2; interpolation++) {
+        ask(AISLE_OPTIONS_PSO, 2.0, 4.0, 10.0, 4.0);
+        request.options.interpolation = interpolation;
+        (void)plan(500);
+        TEST_ASSERT_TRUE(proof() == &route.better);
+        TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_PSO, answer.planner);
+    }
+}
+
+static void test_a_disc_on_shortest_comes_within_a_thousandth_of_the_tangents_and_arcs(void) {
+    hall_disc(0.4, 0.1F);
+    pillar_hall();
+    for (int8_t planner = 0; planner < 2; planner++) {
+        ask(planner == 0 ? AISLE_OPTIONS_AUTO : AISLE_OPTIONS_ASTAR, 2.0, 4.0, 10.0, 4.2);
+        request.options.objective = AISLE_OPTIONS_SHORTEST;
+        (void)plan(1000);
+        (void)proof();
+        double r = 0.5;
+        double a = hypot(3.0, 1.0); // start to the upper left corner, upper right one to the goal
+        double b = hypot(3.0, 0.8);
+        double rise = asin(1.0 / a) + asin(r / a);
+        double fall = asin(0.8 / b) + asin(r / b);
+        double truth = sqrt(a * a - r * r) + sqrt(b * b - r * r) + 2.0 + r * (rise + fall);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3 * truth, truth, (double)answer.length);
+    }
+}
+
+static void test_stops_build_the_path_without_arcs(void) {
+    ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 10.0, 4.0);
+    head = (aisle_path_msg){.boot_id = 3, .path_revision = 8};
+    aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
+    route.stops = true; // as if the verifier had turned the arcs down
+    TEST_ASSERT_EQUAL_INT(0, finish(1000));
+    TEST_ASSERT_TRUE(proof() == &route.first);
+    int turns = 0;
+    for (int16_t i = 0; i < answer.num_waypoints; i++) {
+        TEST_ASSERT_TRUE(fabs((double)answer.waypoints[i].curvature) <= 0.0);
+        turns += (answer.waypoints[i].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
+    }
+    TEST_ASSERT_TRUE(turns >= 1);
+}
+
+static void test_budgets_end_with_budget_before_the_first_proof_and_with_it_after(void) {
+    int refused = 0;
+    int first = 0;
+    ask(AISLE_OPTIONS_PSO, 2.0, 4.0, 10.0, 4.0);
+    for (int32_t budget = 200; budget < 60000; budget += budget / 4) {
+        request.options.work_units = budget;
+        (void)plan(700);
+        TEST_ASSERT_TRUE(route.spent <= (uint32_t)budget + 4096U);
+        if (aisle_route_answer(&route) == NULL) {
+            refused_with(AISLE_STATUS_BUDGET);
+            TEST_ASSERT_EQUAL_INT(0, first); // more budget never proves less
+            refused += 1;
+        } else {
+            first += proof() == &route.first;
+        }
+    }
+    TEST_ASSERT_TRUE(refused >= 3 && first >= 1);
+    TEST_ASSERT_TRUE(aisle_route_answer(&route) == &route.better);
+}
+
+static void test_any_slicing_gives_the_same_bytes_and_units(void) {
+    static uint8_t whole[AISLE_ROUTE_BYTES];
+    static const uint32_t slices[] = {1, 33, 2500};
+    ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 10.0, 4.0);
+    request.goals[1] = (aisle_goal_msg){.id = 12, .x = 6.0, .y = 7.0, .theta = 1.0};
+    request.num_goals = 2;
+    (void)plan(UINT32_MAX);
+    size_t size = proof()->size;
+    uint32_t units = route.spent;
+    memcpy(whole, aisle_route_answer(&route)->bytes, size);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(1, plan(slices[i]));
+        TEST_ASSERT_EQUAL_size_t(size, proof()->size);
+        TEST_ASSERT_EQUAL_MEMORY(whole, aisle_route_answer(&route)->bytes, size);
+        TEST_ASSERT_EQUAL_UINT32(units, route.spent);
+    }
+}
+
+static void test_a_long_body_takes_an_aisle_narrower_than_its_diagonal_along_it(void) {
+    hall_rectangle(1.6, 0.5, 0.05F);
+    hall_begin(12.0, 8.0);
+    hall_add(3.0, 0.0, 9.0, 3.6); // an aisle of 0.8 m; the diagonal is 1.68 m
+    hall_add(3.0, 4.4, 9.0, 8.0);
+    open_hall();
+    for (int k = 0; k < 8; k++) {
+        ask(k % 2 == 0 ? AISLE_OPTIONS_AUTO : AISLE_OPTIONS_ASTAR, 1.5, 2.0 + 0.5 * k, 10.5, 6.0 - 0.4 * k);
+        request.options.objective = k % 4 < 2 ? AISLE_OPTIONS_SAFEST : AISLE_OPTIONS_SHORTEST;
+        (void)plan(1000);
+        (void)proof(); // it turns before and behind the aisle, where there is room
+        TEST_ASSERT_EQUAL(AISLE_SPACE_ALONG, route.legs[0].mode);
+    }
+}
+
+static void test_a_bend_no_body_can_take_is_kinematic_with_its_place(void) {
+    hall_rectangle(1.6, 0.5, 0.05F);
+    hall_begin(12.0, 8.0);
+    hall_add(0.0, 0.0, 5.0, 3.6); // aisles of 0.8 m with a right angle
+    hall_add(5.8, 0.0, 12.0, 8.0);
+    hall_add(0.0, 4.4, 5.8, 8.0);
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO, 1.5, 4.0, 5.4, 1.5);
+    (void)plan(1000);
+    refused_with(AISLE_STATUS_KINEMATIC);
+    TEST_ASSERT_TRUE(route.has_place);
+    TEST_ASSERT_TRUE(route.place.x > 1.0 && route.place.x < 5.8 && route.place.y > 1.0 && route.place.y < 4.4);
+}
+
+static void test_curves_a_vehicle_cannot_drive_are_kinematic(void) {
+    hall_vehicle.curvature_max = 0.5; // 2 m, in a hall where the turns need less
+    hall_begin(6.0, 4.0);
+    hall_add(2.0, 1.2, 4.0, 2.8);
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO, 1.0, 2.0, 5.0, 2.0);
+    (void)plan(1000);
+    refused_with(AISLE_STATUS_KINEMATIC);
+}
+
+static void test_a_curve_wide_enough_is_driven_without_turns_on_the_spot(void) {
+    hall_vehicle.curvature_max = 0.8;
+    hall_begin(20.0, 16.0);
+    hall_add(8.0, 6.0, 10.0, 10.0);
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO, 2.0, 8.0, 18.0, 8.0);
+    (void)plan(1000);
+    (void)proof();
+    for (int16_t i = 0; i < answer.num_waypoints; i++) {
+        TEST_ASSERT_TRUE(fabs((double)answer.waypoints[i].curvature) <= 0.8 + 1e-6);
+        TEST_ASSERT_EQUAL_INT16(0, answer.waypoints[i].flags & AISLE_WAYPOINT_TURN_IN_PLACE);
+    }
+}
+
+static void test_the_second_leg_is_named_where_it_fails(void) {
+    hall_add(9.0, 0.0, 9.2, 8.0);
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 2.0, 7.0);
+    request.goals[1] = (aisle_goal_msg){.id = 12, .x = 10.5, .y = 4.0, .tolerance_theta = 4.0F};
+    request.num_goals = 2;
+    (void)plan(1000);
+    refused_with(AISLE_STATUS_NO_PATH);
+    TEST_ASSERT_EQUAL_INT32(12, route.cause.id);
+}
+
+static void test_a_full_open_list_is_a_limit(void) {
+    aisle_limits limits = hall_limits;
+    limits.open_nodes = 16;
+    open_with(&limits);
+    ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 10.0, 4.0);
+    (void)plan(1000);
+    refused_with(AISLE_STATUS_LIMIT);
+}
+
+static void test_the_answer_carries_the_ids_it_was_asked_with(void) {
+    ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 10.0, 4.0);
+    (void)plan(1000);
+    (void)proof();
+    TEST_ASSERT_EQUAL_INT64(3, answer.boot_id);
+    TEST_ASSERT_EQUAL_INT32(5, answer.query_id);
+    TEST_ASSERT_EQUAL_INT32(1, answer.map_id);
+    TEST_ASSERT_EQUAL_INT32(hall_vehicle.revision, answer.vehicle_revision);
+    TEST_ASSERT_EQUAL_INT64(100, answer.t0_utime);
+    TEST_ASSERT_TRUE(answer.work_units > 0 && answer.work_units <= (int32_t)route.spent);
+    TEST_ASSERT_TRUE(answer.length_bound >= 7.99F);
+}
+
+static void test_memory_is_about_what_the_header_says(void) {
+    aisle_arena arena = aisle_arena_measure();
+    aisle_limits least = {4096U, 1U, 3U, 1024U, 1U};
+    static aisle_route measured;
+    aisle_route_carve(&measured, &arena, &least);
+    TEST_ASSERT_TRUE(arena.used < 800U << 10);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_auto_is_never_worse_than_the_seed_nor_than_astar_and_every_answer_is_free);
+    RUN_TEST(test_the_first_proof_is_announced_once_before_the_end);
+    RUN_TEST(test_pso_by_name_takes_the_swarms_path_in_both_interpolations);
+    RUN_TEST(test_a_disc_on_shortest_comes_within_a_thousandth_of_the_tangents_and_arcs);
+    RUN_TEST(test_stops_build_the_path_without_arcs);
+    RUN_TEST(test_budgets_end_with_budget_before_the_first_proof_and_with_it_after);
+    RUN_TEST(test_any_slicing_gives_the_same_bytes_and_units);
+    RUN_TEST(test_a_long_body_takes_an_aisle_narrower_than_its_diagonal_along_it);
+    RUN_TEST(test_a_bend_no_body_can_take_is_kinematic_with_its_place);
+    RUN_TEST(test_curves_a_vehicle_cannot_drive_are_kinematic);
+    RUN_TEST(test_a_curve_wide_enough_is_driven_without_turns_on_the_spot);
+    RUN_TEST(test_the_second_leg_is_named_where_it_fails);
+    RUN_TEST(test_a_full_open_list_is_a_limit);
+    RUN_TEST(test_the_answer_carries_the_ids_it_was_asked_with);
+    RUN_TEST(test_memory_is_about_what_the_header_says);
+    return UNITY_END();
+}
