@@ -234,7 +234,7 @@ static void test_vias_lie_within_their_reach_of_the_seed_spread_by_length(void) 
 
 static void test_the_number_of_samples_is_the_wished_one_or_follows_the_length(void) {
     static const int16_t wished[] = {0, 1, 16, 100, 512, 32767};
-    static const uint32_t taken[] = {82, 16, 16, 100, 512, 512};
+    static const uint32_t taken[] = {55, 16, 16, 100, 512, 512};
     for (int i = 0; i < 6; i++) {
         options.num_samples = wished[i];
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_swarm_start(&swarm, &space, &objective, &options, straight, 2));
