@@ -21,13 +21,7 @@ void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
 // The lever, and discs of equal radius along the body's x axis that together hold the footprint's box.
 static void measure_body(aisle_space *self) {
     const aisle_vehicle *vehicle = self->vehicle;
-    aisle_aabb box = {vehicle->footprint[0], vehicle->footprint[0]};
-    for (uint32_t i = 1; i < vehicle->n; i++) {
-        box.lo.x = aisle_min(box.lo.x, vehicle->footprint[i].x);
-        box.lo.y = aisle_min(box.lo.y, vehicle->footprint[i].y);
-        box.hi.x = aisle_max(box.hi.x, vehicle->footprint[i].x);
-        box.hi.y = aisle_max(box.hi.y, vehicle->footprint[i].y);
-    }
+    aisle_aabb box = aisle_convex_aabb(&(aisle_convex){vehicle->footprint, vehicle->n, 0.0});
     for (uint32_t i = 0; i < vehicle->n; i++) {
         self->lever = aisle_max(self->lever, aisle_vec2_length(vehicle->footprint[i]));
     }
