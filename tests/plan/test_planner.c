@@ -136,7 +136,7 @@ static void test_a_query_is_answered_by_a_path_that_keeps_the_margin(void) {
     TEST_ASSERT_EQUAL_INT32(1, path->map_revision);
     TEST_ASSERT_EQUAL_INT32(0, path->goal_list_id);
     TEST_ASSERT_TRUE(path->length > 8.0F && path->length < 11.0F);
-    TEST_ASSERT_TRUE(path->length_bound > 7.99F);
+    TEST_ASSERT_TRUE(path->length_bound > 7.99F && path->length_bound <= 8.0F); // the beeline
     const aisle_waypoint_msg *end = &path->waypoints[path->num_waypoints - 1];
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 10.0, end->x);
     TEST_ASSERT_EQUAL_INT32(11, end->goal_id);
@@ -701,6 +701,25 @@ static void test_auto_sends_the_first_proof_and_then_the_better_path_as_the_next
     TEST_ASSERT_EQUAL_INT64(2, count(AISLE_COUNTER_PATHS));
 }
 
+static void test_auto_sends_no_path_twice_where_the_first_one_stays(void) {
+    int kept = 0;
+    take_hall();
+    here = door_pose(2.0, 4.0, 0.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+    for (int32_t i = 0; i < 8; i++) {
+        int before = door_paths;
+        aisle_goal_list_msg goals = door_goals(1 + i, 10.0, 2.0 + 0.5 * i);
+        goals.options.planner = AISLE_OPTIONS_AUTO;
+        goals.options.objective = (int8_t)(i % 4);
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+        door_settle();
+        bool improved = door_path.planner == AISLE_OPTIONS_PSO;
+        TEST_ASSERT_EQUAL_INT(before + (improved ? 2 : 1), door_paths);
+        kept += !improved;
+    }
+    TEST_ASSERT_GREATER_THAN_INT(0, kept);
+}
+
 // The last two PATH events differ in utime and valid_until_utime alone.
 static void renewed_only(void) {
     size_t utime = 0;
@@ -760,6 +779,26 @@ static void test_the_lease_runs_out_while_the_pose_is_not_localized(void) {
     TEST_ASSERT_EQUAL_INT(before + 1, door_paths);
 }
 
+static void test_a_pose_on_another_map_drives_nobody(void) {
+    take_hall();
+    stand_and_go();
+    int before = door_paths;
+    here.map_id = 2;
+    door_wait(1000000, &here);
+    TEST_ASSERT_EQUAL_INT(before, door_paths);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_MAP_MISMATCH, status_now().cause);
+    TEST_ASSERT_EQUAL_INT32(2, status_now().cause_id);
+    aisle_goal_list_msg goals = door_goals(2, 10.0, 5.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+    door_settle();
+    TEST_ASSERT_EQUAL_INT8(AISLE_PATH_NONE, door_path.status);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_MAP_MISMATCH, door_path.cause);
+    here.map_id = 1;
+    door_wait(50000, &here);
+    door_judge(&door_path);
+    TEST_ASSERT_EQUAL_INT32(2, door_path.goal_list_revision);
+}
+
 static aisle_status command(int8_t which, int32_t id) {
     aisle_command_msg msg = {.command = which, .command_id = id};
     return door_submit(AISLE_INPUT_COMMAND, &msg);
@@ -780,6 +819,17 @@ static void test_hold_stops_the_lease_and_resume_renews_it_at_once(void) {
     TEST_ASSERT_EQUAL_INT(before + 1, door_paths);
     renewed_only();
     TEST_ASSERT_EQUAL(AISLE_STATUS_ACTIVE, status_now().state);
+}
+
+static void test_resume_after_a_short_hold_does_not_wait_for_the_next_turn(void) {
+    take_hall();
+    stand_and_go();
+    TEST_ASSERT_EQUAL(AISLE_OK, command(AISLE_COMMAND_HOLD, 1));
+    door_wait(100000, &here);
+    TEST_ASSERT_EQUAL(AISLE_OK, command(AISLE_COMMAND_RESUME, 2));
+    door_settle();
+    TEST_ASSERT_EQUAL_INT(2, door_paths);
+    TEST_ASSERT_EQUAL_INT64(door_now, door_path.utime);
 }
 
 static void test_no_path_leaves_while_held_not_even_a_new_one(void) {
@@ -865,6 +915,15 @@ static void test_cancel_ends_a_plan_under_way_without_an_event(void) {
     door_settle();
     TEST_ASSERT_EQUAL_INT(0, door_paths);
     TEST_ASSERT_EQUAL(AISLE_STATUS_IDLE, status_now().state);
+}
+
+static void test_a_list_cancelled_before_its_turn_is_not_even_refused(void) {
+    aisle_goal_list_msg goals = door_goals(1, 10.0, 4.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals)); // there is no layout
+    TEST_ASSERT_EQUAL(AISLE_OK, command(AISLE_COMMAND_CANCEL, 1));
+    door_settle();
+    TEST_ASSERT_EQUAL_INT(0, door_paths);
+    TEST_ASSERT_EQUAL_INT64(0, count(AISLE_COUNTER_GOAL_LISTS));
 }
 
 static void test_unknown_commands_are_refused(void) {
@@ -989,6 +1048,12 @@ static void test_goal_lists_held_are_duplicates_older_ones_outdated_other_ones_c
     TEST_ASSERT_EQUAL(AISLE_ERR_DATA, door_submit(AISLE_INPUT_GOALS, &goals));
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_CONFLICT, status_now().cause);
     goals.options.objective = AISLE_OPTIONS_SAFEST;
+    goals.ordering = AISLE_GOAL_LIST_ORDERED;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, door_submit(AISLE_INPUT_GOALS, &goals));
+    goals.ordering = AISLE_GOAL_LIST_ANY_ORDER;
+    goals.map_id = 0;
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, door_submit(AISLE_INPUT_GOALS, &goals));
+    goals.map_id = 1;
     goals.goals[1].x = 3.5;
     TEST_ASSERT_EQUAL(AISLE_ERR_DATA, door_submit(AISLE_INPUT_GOALS, &goals));
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_CONFLICT, status_now().cause);
@@ -997,7 +1062,7 @@ static void test_goal_lists_held_are_duplicates_older_ones_outdated_other_ones_c
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_OUTDATED, status_now().cause);
     door_settle();
     TEST_ASSERT_EQUAL_INT(before, door_paths);
-    TEST_ASSERT_EQUAL_INT64(3, count(AISLE_COUNTER_REJECTED));
+    TEST_ASSERT_EQUAL_INT64(5, count(AISLE_COUNTER_REJECTED));
 }
 
 static void test_a_list_sent_again_after_it_was_cancelled_or_reached_moves_nobody(void) {
@@ -1264,15 +1329,19 @@ int main(void) {
     RUN_TEST(test_any_order_takes_the_nearest_goal_first);
     RUN_TEST(test_a_goal_list_is_answered_by_a_leased_path_from_the_pose);
     RUN_TEST(test_auto_sends_the_first_proof_and_then_the_better_path_as_the_next_revision);
+    RUN_TEST(test_auto_sends_no_path_twice_where_the_first_one_stays);
     RUN_TEST(test_the_lease_is_renewed_every_half_second_and_nothing_else_changes);
     RUN_TEST(test_the_lease_runs_out_with_a_stale_pose_and_goes_on_with_a_fresh_one);
     RUN_TEST(test_the_lease_runs_out_while_the_pose_is_not_localized);
+    RUN_TEST(test_a_pose_on_another_map_drives_nobody);
     RUN_TEST(test_hold_stops_the_lease_and_resume_renews_it_at_once);
+    RUN_TEST(test_resume_after_a_short_hold_does_not_wait_for_the_next_turn);
     RUN_TEST(test_no_path_leaves_while_held_not_even_a_new_one);
     RUN_TEST(test_no_path_leaves_on_a_stale_pose_not_even_a_new_one);
     RUN_TEST(test_resend_sends_the_path_at_once);
     RUN_TEST(test_cancel_and_an_empty_list_revoke_the_path);
     RUN_TEST(test_cancel_ends_a_plan_under_way_without_an_event);
+    RUN_TEST(test_a_list_cancelled_before_its_turn_is_not_even_refused);
     RUN_TEST(test_unknown_commands_are_refused);
     RUN_TEST(test_no_path_is_out_while_a_moving_obstacle_is_reported);
     RUN_TEST(test_the_way_goes_on_when_the_moving_obstacle_is_gone);

@@ -194,6 +194,18 @@ static void test_budgets_end_with_budget_before_the_first_proof_and_with_it_afte
     TEST_ASSERT_TRUE(aisle_route_answer(&route) == &route.better);
 }
 
+static void test_a_swarm_cut_short_leaves_enough_to_prove_its_path(void) {
+    ask(AISLE_OPTIONS_PSO, 2.0, 4.0, 10.0, 4.0);
+    request.options.work_units = 9000;
+    (void)plan(700);
+    int64_t some = route.swarm_evals;
+    TEST_ASSERT_TRUE(proof() == &route.better);
+    TEST_ASSERT_TRUE(route.spent <= 9000);
+    request.options.work_units = 0;
+    (void)plan(700);
+    TEST_ASSERT_TRUE(some > 0 && some < route.swarm_evals);
+}
+
 static void test_any_slicing_gives_the_same_bytes_and_units(void) {
     static uint8_t whole[AISLE_ROUTE_BYTES];
     static const uint32_t slices[] = {1, 33, 2500};
@@ -314,6 +326,7 @@ int main(void) {
     RUN_TEST(test_a_disc_on_shortest_comes_within_a_thousandth_of_the_tangents_and_arcs);
     RUN_TEST(test_stops_build_the_path_without_arcs);
     RUN_TEST(test_budgets_end_with_budget_before_the_first_proof_and_with_it_after);
+    RUN_TEST(test_a_swarm_cut_short_leaves_enough_to_prove_its_path);
     RUN_TEST(test_any_slicing_gives_the_same_bytes_and_units);
     RUN_TEST(test_a_long_body_takes_an_aisle_narrower_than_its_diagonal_along_it);
     RUN_TEST(test_a_bend_no_body_can_take_is_kinematic_with_its_place);

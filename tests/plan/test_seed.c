@@ -187,6 +187,7 @@ static void test_a_disc_finds_a_way_just_where_an_independent_flood_does_and_it_
             TEST_ASSERT_TRUE(st == AISLE_OK || st == AISLE_PARTIAL);
             TEST_ASSERT_FALSE(sure && st != AISLE_OK);
             TEST_ASSERT_FALSE(!possible && st == AISLE_OK);
+            TEST_ASSERT_TRUE(spent >= seed.search.expanded);
             if (st == AISLE_OK) {
                 polyline_is_free(true, start, goal);
                 ways += 1;

@@ -68,6 +68,16 @@ static void test_the_width_of_a_door_is_told_within_5_mm_with_one_of_its_walls(v
     }
 }
 
+static void test_a_door_between_the_strides_is_told_all_the_same(void) {
+    for (int k = 0; k < 8; k++) {
+        wall_with_door(3.0, 1.0, 2.213 + 0.025 * k, 0.16);
+        open_hall(0.05F);
+        TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, 8, 1000));
+        TEST_ASSERT_TRUE(why.proved && why.connected);
+        TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.16, why.width);
+    }
+}
+
 static void test_of_two_doors_the_wider_one_is_told(void) {
     hall_begin(8.0, 5.0);
     hall_add(3.0, 0.0, 3.2, 1.0);
@@ -154,6 +164,7 @@ static void test_a_full_open_list_is_told(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_the_width_of_a_door_is_told_within_5_mm_with_one_of_its_walls);
+    RUN_TEST(test_a_door_between_the_strides_is_told_all_the_same);
     RUN_TEST(test_of_two_doors_the_wider_one_is_told);
     RUN_TEST(test_a_gap_between_two_corners_is_told_across);
     RUN_TEST(test_a_station_close_to_a_wall_is_not_taken_for_the_narrow_place);
