@@ -1106,6 +1106,7 @@ static void test_a_goal_reached_at_rest_ends_the_mission(void) {
     door_wait(50000, &here);
     TEST_ASSERT_EQUAL(AISLE_STATUS_ACTIVE, status_now().state);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, status_now().distance_remaining);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, status_now().time_remaining);
     here.vx = 0.0F;
     here.x = 10.06; // nor is stopping beside it
     door_wait(50000, &here);

@@ -82,12 +82,20 @@ static double uniform(aisle_rng *rng, double lo, double hi) {
     return lo + (hi - lo) * (double)aisle_rng_float(rng);
 }
 
+// x before y: the order in which a call's arguments are computed is the compiler's.
+static aisle_vec2 uniform_point(aisle_rng *rng, aisle_vec2 lo, aisle_vec2 hi) {
+    double x = uniform(rng, lo.x, hi.x);
+    double y = uniform(rng, lo.y, hi.y);
+    return aisle_vec2_of(x, y);
+}
+
 static void random_hall(aisle_rng *rng) {
     hall_begin(12.0, 8.0);
     for (int i = 0; i < 6; i++) {
         double x = uniform(rng, 1.5, 9.0);
         double y = uniform(rng, 0.5, 6.5);
-        hall_add(x, y, x + uniform(rng, 0.3, 1.5), y + uniform(rng, 0.3, 1.5));
+        aisle_vec2 size = uniform_point(rng, aisle_vec2_of(0.3, 0.3), aisle_vec2_of(1.5, 1.5));
+        hall_add(x, y, x + size.x, y + size.y);
     }
     open_hall();
 }
@@ -101,7 +109,8 @@ static void test_auto_is_never_worse_than_the_seed_nor_than_astar_and_every_answ
         aisle_rng rng = aisle_rng_seed(s);
         random_hall(&rng);
         int8_t objective = (int8_t)(s % 4U);
-        ask(AISLE_OPTIONS_ASTAR, 0.8, uniform(&rng, 1.0, 7.0), 11.2, uniform(&rng, 1.0, 7.0));
+        aisle_vec2 ends = uniform_point(&rng, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(7.0, 7.0));
+        ask(AISLE_OPTIONS_ASTAR, 0.8, ends.x, 11.2, ends.y);
         request.options.objective = objective;
         (void)plan(1000);
         if (aisle_route_answer(&route) == NULL) {
