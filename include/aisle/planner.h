@@ -18,6 +18,11 @@
 // Order: inputs take effect in the order of submit(). A request (goal list, query) is planned on the
 // layout and vehicle in force when its turn comes; a layout that completes while a request is being
 // planned takes effect right after it.
+// Missions: the newest goal list is the mission. Its path is leased for AISLE_LEASE_US and sent again every
+// AISLE_LEASE_RESEND_US while the pose is fresh, localized and on the layout's map, no moving obstacle is reported and
+// no HOLD is on; a path found meanwhile is kept back until then. A list refused for want of a pose or for a moving
+// obstacle is planned again when that is over, every list for a new layout or vehicle, each from the newest pose. What
+// names a list stays known when it is reached or cancelled: sent again it is a duplicate and moves nobody.
 // Threads: one planner, one thread at a time. Planners share nothing.
 #ifndef AISLE_PLANNER_H
 #define AISLE_PLANNER_H
