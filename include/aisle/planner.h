@@ -16,8 +16,8 @@
 // with an earlier time than the last is read as the last. Nothing but lease and age depends on it: the
 // paths depend on the inputs and their order alone, however the work is cut into steps.
 // Order: inputs take effect in the order of submit(). A request (goal list, query) is planned on the
-// layout and vehicle in force when its turn comes; a layout that completes while a request is being
-// planned takes effect right after it.
+// layout and vehicle in force when its turn comes; while one waits or is planned, layouts and vehicles are
+// not taken (AISLE_BUSY).
 // Missions: the newest goal list is the mission. Its path is leased for AISLE_LEASE_US and sent again every
 // AISLE_LEASE_RESEND_US while the pose is fresh, localized and on the layout's map, no moving obstacle is reported and
 // no HOLD is on; a path found meanwhile is kept back until then. A list refused for want of a pose or for a moving
