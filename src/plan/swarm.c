@@ -13,6 +13,7 @@
 void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
     self->work = (float *)aisle_arena_take(arena, AISLE_PSO_WORK_LEN(2U * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES),
                                            sizeof(float));
+    self->spline = (aisle_spline *)aisle_arena_take(arena, 1U, sizeof(aisle_spline));
     self->sample = (aisle_spline_sample *)aisle_arena_take(arena, AISLE_SWARM_SAMPLES_MAX, sizeof(aisle_spline_sample));
 }
 
@@ -77,10 +78,10 @@ static aisle_pso_cost cost(void *ctx, const float *x) {
     aisle_swarm *self = (aisle_swarm *)ctx;
     aisle_vec2 points[AISLE_SWARM_VIAS + 2U];
     uint32_t n = via_points(self, x, points);
-    if (aisle_spline_fit(&self->spline, self->kind, points, n) != AISLE_OK) {
+    if (aisle_spline_fit(self->spline, self->kind, points, n) != AISLE_OK) {
         return (aisle_pso_cost){INFINITY, INFINITY};
     }
-    aisle_spline_resample(&self->spline, self->samples, self->sample);
+    aisle_spline_resample(self->spline, self->samples, self->sample);
     return score(self);
 }
 

@@ -37,7 +37,7 @@ typedef struct aisle_swarm {
     aisle_pso_config config;
     aisle_pso pso;
     float *work; // [AISLE_PSO_WORK_LEN(2 * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES)]
-    aisle_spline spline;
+    aisle_spline *spline;
     aisle_spline_sample *sample; // [AISLE_SWARM_SAMPLES_MAX]
     aisle_pso_cost seed_cost;    // of the first particle
     uint32_t units;
