@@ -64,8 +64,17 @@ static void put_lease(aisle_planner *self, aisle_proof *proof) {
     aisle_msg_put_int64(proof->bytes + valid, self->now_us + AISLE_LEASE_US);
 }
 
+// Work is spent after the proof, too: the answer tells all of it.
+static void put_work_units(const aisle_proof *proof, uint32_t spent) {
+    size_t at = 0;
+    bool found = aisle_msg_field_offset(AISLE_MSG_PATH, "work_units", &at);
+    AISLE_ASSERT(found);
+    aisle_msg_put_int32(proof->bytes + at, (int32_t)spent);
+}
+
 void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
     self->counters[AISLE_COUNTER_PATHS]++;
+    put_work_units(proof, self->route->spent);
     if (request->is_query) {
         queue(self, AISLE_EVENT_REPLY, proof->bytes, proof->size, &proof->stamp);
         return;

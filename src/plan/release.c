@@ -44,17 +44,21 @@ static size_t offset_of(const char *name) {
 
 bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc) {
     static const uint8_t zeros[8] = {0};
-    size_t lease[2] = {offset_of("utime"), offset_of("valid_until_utime")};
+    static const struct {
+        const char *name; // in the order of path_t
+        size_t size;
+    } open[] = {{"utime", 8}, {"valid_until_utime", 8}, {"work_units", 4}};
     size_t at = 0;
-    AISLE_ASSERT(lease[0] < lease[1]);
-    if (bytes == NULL || size < lease[1] + sizeof zeros) {
-        return false;
-    }
     *crc = 0;
-    for (int i = 0; i < 2; i++) {
-        *crc = aisle_crc32(*crc, bytes + at, lease[i] - at);
-        *crc = aisle_crc32(*crc, zeros, sizeof zeros);
-        at = lease[i] + sizeof zeros;
+    for (size_t i = 0; i < sizeof open / sizeof open[0]; i++) {
+        size_t from = offset_of(open[i].name);
+        AISLE_ASSERT(from >= at);
+        if (bytes == NULL || size < from + open[i].size) {
+            return false;
+        }
+        *crc = aisle_crc32(*crc, bytes + at, from - at);
+        *crc = aisle_crc32(*crc, zeros, open[i].size);
+        at = from + open[i].size;
     }
     *crc = aisle_crc32(*crc, bytes + at, size - at);
     return true;

@@ -376,7 +376,16 @@ static aisle_status step_build(aisle_route *self, uint32_t units) {
     return AISLE_BUSY;
 }
 
+// What the path built is worth: what the objective means in full, stops and acceleration included, where the path's sums tell.
 static double path_value(const aisle_route *self) {
+    switch (self->objective.kind) {
+    case AISLE_OPTIONS_FASTEST:
+        return (double)self->path->duration;
+    case AISLE_OPTIONS_LEAST_ENERGY:
+        return (double)self->path->energy;
+    default:
+        break;
+    }
     double value = 0.0;
     for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
         const aisle_leg *leg = &self->legs[i];
@@ -465,7 +474,7 @@ static aisle_status after_better_proof(aisle_route *self) {
     if (worse) {
         return rebuild_better(self);
     }
-    self->better.ready = true;
+    self->better.ready = by_name || self->better.value <= self->first.value;
     self->stage = AISLE_ROUTE_END;
     return AISLE_OK;
 }

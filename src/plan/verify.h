@@ -83,7 +83,7 @@ typedef enum aisle_verify_fault {
 
 // What a proof leaves behind. Only verify.c writes one; release() checks it.
 typedef struct aisle_stamp {
-    uint32_t crc;  // of the proved bytes, the lease's two times taken as 0
+    uint32_t crc;  // of the proved bytes, the lease's two times and work_units taken as 0
     uint32_t size; // of them; 0: nothing proved
 } aisle_stamp;
 
@@ -148,9 +148,10 @@ void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request,
 // Further calls repeat the answer and cost nothing. However cut into steps, answer and counts are the same.
 aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spent, aisle_stamp *stamp);
 
-// The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of status NONE with
-// at most one waypoint (nothing to drive: it marks the place of the cause). utime and valid_until_utime may have changed since the proof (lease). AISLE_ERR_ARG otherwise,
-// *event untouched. stamp may be NULL (nothing proved). O(size).
+// The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of
+// status NONE with at most one waypoint (nothing to drive: it marks the place of the cause). utime and
+// valid_until_utime (the lease) and work_units (spent after the proof, too) may have changed since. AISLE_ERR_ARG
+// otherwise, *event untouched.
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
                            aisle_event *event);
 

@@ -48,6 +48,6 @@ void aisle_verify_motion_begin(aisle_verify *self);
 aisle_status aisle_verify_motion_step(aisle_verify *self);
 
 // ---- release.c
-// crc of a path_t with the lease's two times taken as 0. False: too short for one.
+// crc of a path_t with the lease's two times and work_units taken as 0. False: too short for one.
 bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc);
 #endif

@@ -411,6 +411,10 @@ void aisle_msg_put_int64(void *at, int64_t value) {
     store64(at, (uint64_t)value);
 }
 
+void aisle_msg_put_int32(void *at, int32_t value) {
+    store32(at, (uint32_t)value);
+}
+
 const char *aisle_msg_name(aisle_msg_type type) {
     return is_type(type) ? aisle_wire_types[type].name : "?";
 }

@@ -68,8 +68,9 @@ aisle_status aisle_msg_encode_body(aisle_msg_type type, const void *msg, void *o
 // variable array before it. O(members).
 bool aisle_msg_field_offset(aisle_msg_type type, const char *name, size_t *offset);
 
-// Overwrites an encoded int64_t, e.g. a utime found by aisle_msg_field_offset().
+// Overwrite an encoded number, e.g. a utime found by aisle_msg_field_offset().
 void aisle_msg_put_int64(void *at, int64_t value);
+void aisle_msg_put_int32(void *at, int32_t value);
 
 // Of a type; 0 or "?" for none. name: as in its .lcm file ("path_t"). max_size: a buffer of so many bytes never is
 // too small for what encode or decode accepts. struct_size: sizeof of the C struct. fingerprint: as lcm-gen has it.

@@ -49,11 +49,12 @@ static void test_a_renewed_lease_leaves(void) {
 }
 
 static void test_any_other_byte_changed_stays(void) {
-    size_t utime = 0, until = 0;
+    size_t utime = 0, until = 0, units = 0;
     TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "utime", &utime));
     TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "valid_until_utime", &until));
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "work_units", &units));
     for (size_t i = 0; i < path_size; i++) {
-        bool lease = (i >= utime && i < utime + 8) || (i >= until && i < until + 8);
+        bool lease = (i >= utime && i < utime + 8) || (i >= until && i < until + 8) || (i >= units && i < units + 4);
         path_bytes[i] ^= 0x10U;
         TEST_ASSERT_EQUAL(lease ? AISLE_OK : AISLE_ERR_ARG, release());
         path_bytes[i] ^= 0x10U;

@@ -639,6 +639,10 @@ static void test_a_lease_is_renewed_in_the_encoded_bytes(void) {
     msg.path.valid_until_utime = -2;
     aisle_msg_put_int64(bytes + utime, msg.path.utime);
     aisle_msg_put_int64(bytes + until, msg.path.valid_until_utime);
+    msg.path.work_units = -123456789;
+    size_t units = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "work_units", &units));
+    aisle_msg_put_int32(bytes + units, msg.path.work_units);
     TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_msg_encode(AISLE_MSG_PATH, &msg, again, ROOM, &second));
     TEST_ASSERT_EQUAL_size_t(size, second);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(again, bytes, size);
