@@ -112,6 +112,7 @@ static void test_auto_is_never_worse_than_the_seed_nor_than_astar_and_every_answ
         aisle_vec2 ends = uniform_point(&rng, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(7.0, 7.0));
         ask(AISLE_OPTIONS_ASTAR, 0.8, ends.x, 11.2, ends.y);
         request.options.objective = objective;
+        request.options.interpolation = s < SEEDS / 2 ? AISLE_OPTIONS_SPLINE : AISLE_OPTIONS_LINEAR;
         (void)plan(1000);
         if (aisle_route_answer(&route) == NULL) {
             continue;
@@ -122,6 +123,9 @@ static void test_auto_is_never_worse_than_the_seed_nor_than_astar_and_every_answ
         (void)plan(1000);
         const aisle_proof *best = proof();
         TEST_ASSERT_TRUE(best->value <= seed * (1.0 + 1e-9));
+        if (objective == AISLE_OPTIONS_FASTEST) {
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)answer.duration, best->value);
+        }
         TEST_ASSERT_EQUAL(best == &route.better, answer.planner == AISLE_OPTIONS_PSO);
         TEST_ASSERT_EQUAL_INT32(best == &route.better ? 9 : 8, answer.path_revision);
         better += best->value < 0.99 * seed;
