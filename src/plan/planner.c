@@ -1,17 +1,13 @@
 #include "plan/planner_state.h"
 
 #include "base/check.h"
-#include "robot/profile.h"
 
-#include <float.h>
 #include <stddef.h>
 #include <string.h>
 
 #if AISLE_PLANNER_ALIGN != AISLE_ARENA_ALIGN
 #error "the planner's block is an arena"
 #endif
-
-#define HEADING_MAX 1e4 // rad of a stop's heading; also of its tolerances, in their units
 
 // ---- memory
 
@@ -123,83 +119,6 @@ size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, s
 
 // ---- requests in turn
 
-// Is x in [lo, hi]? Not if it is no number.
-static bool within(double x, double lo, double hi) {
-    return x >= lo && x <= hi;
-}
-
-static bool stop_is_bad(const aisle_goal_msg *stop) {
-    return !within(stop->theta, -HEADING_MAX, HEADING_MAX) || !within((double)stop->tolerance_xy, 0.0, HEADING_MAX) ||
-           !within((double)stop->tolerance_theta, 0.0, HEADING_MAX) ||
-           !within((double)stop->dwell, 0.0, AISLE_PROFILE_DURATION_MAX) || !within(stop->x, -DBL_MAX, DBL_MAX) ||
-           !within(stop->y, -DBL_MAX, DBL_MAX);
-}
-
-// Numbers no vehicle can mean: the goal's id, 0 for the start or their count.
-static bool is_malformed(const aisle_request *request, int32_t *id) {
-    *id = 0;
-    if (request->num_goals < 1 || stop_is_bad(&request->start)) {
-        return true;
-    }
-    for (int16_t i = 0; i < request->num_goals; i++) {
-        if (stop_is_bad(&request->goals[i])) {
-            *id = request->goals[i].id;
-            return true;
-        }
-    }
-    return false;
-}
-
-// What keeps anyone from driving by the pose at hand, its age left out.
-static aisle_refusal pose_hindrance(const aisle_planner *self) {
-    if (!self->has_pose) {
-        return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
-    }
-    if (self->pose.localized == 0) {
-        return (aisle_refusal){AISLE_STATUS_NOT_LOCALIZED, self->pose.seq, 0.0F};
-    }
-    if (self->pose.map_id != 0 && self->pose.map_id != aisle_layout_map_id(self->layout)) {
-        return (aisle_refusal){AISLE_STATUS_MAP_MISMATCH, self->pose.map_id, 0.0F};
-    }
-    return (aisle_refusal){0, 0, 0.0F};
-}
-
-static bool obstacle_present(const aisle_planner *self, int32_t *id) {
-    for (int i = 0; i < AISLE_OBSTACLES_MAX_SOURCES; i++) {
-        if (self->obstacle_id[i] != 0) {
-            *id = self->obstacle_id[i];
-            return true;
-        }
-    }
-    return false;
-}
-
-aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request) {
-    int32_t id = 0;
-    if (!aisle_layout_is_in_force(self->layout)) {
-        return (aisle_refusal){AISLE_STATUS_NO_LAYOUT, 0, 0.0F};
-    }
-    if (!self->has_vehicle) {
-        return (aisle_refusal){AISLE_STATUS_NO_VEHICLE, 0, 0.0F};
-    }
-    if (request->map_id != 0 && request->map_id != aisle_layout_map_id(self->layout)) {
-        return (aisle_refusal){AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_id(self->layout), 0.0F};
-    }
-    if (is_malformed(request, &id)) {
-        return (aisle_refusal){AISLE_STATUS_MALFORMED, id, (float)request->num_goals};
-    }
-    if (request->is_query) {
-        return (aisle_refusal){0, 0, 0.0F};
-    }
-    if (request->pose_utime == 0) {
-        return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
-    }
-    if (obstacle_present(self, &id)) {
-        return (aisle_refusal){AISLE_STATUS_BLOCKED_BY, id, 0.0F};
-    }
-    return pose_hindrance(self);
-}
-
 static bool is_stale(const aisle_planner *self, const aisle_request *request) {
     const aisle_request *held = &self->mission.request;
     return !request->is_query && (!self->mission.wanted || held->goal_list_id != request->goal_list_id ||
@@ -294,20 +213,6 @@ static void step_layout(aisle_planner *self, uint32_t units) {
 
 // ---- lease
 
-int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us, int32_t *id) {
-    *id = 0;
-    if (obstacle_present(self, id)) {
-        return AISLE_STATUS_BLOCKED_BY;
-    }
-    double timeout = self->has_vehicle ? self->vehicle.pose_timeout : 0.2;
-    if (!self->has_pose || (double)(now_us - self->pose_at_us) > timeout * 1e6) {
-        return AISLE_STATUS_POSE_STALE;
-    }
-    aisle_refusal why = pose_hindrance(self);
-    *id = why.id;
-    return why.cause;
-}
-
 static void renew_lease(aisle_planner *self) {
     int32_t id;
     if (self->mission.has_path && !self->held && self->now_us >= self->lease_due_us &&
@@ -363,122 +268,4 @@ int64_t aisle_planner_next_deadline(const aisle_planner *self) {
 
 const int64_t *aisle_planner_counters(const aisle_planner *self) {
     return self->counters;
-}
-
-// ---- status
-
-static int8_t state_of(const aisle_planner *self, int64_t now_us, int16_t *cause, int32_t *cause_id) {
-    const aisle_mission *mission = &self->mission;
-    *cause = self->cause;
-    *cause_id = self->cause != 0 ? self->cause_id : 0;
-    if (!aisle_layout_is_in_force(self->layout) || !self->has_vehicle) {
-        if (*cause == 0) {
-            *cause = self->has_vehicle ? AISLE_STATUS_NO_LAYOUT : AISLE_STATUS_NO_VEHICLE;
-        }
-        return AISLE_STATUS_WAITING;
-    }
-    if (self->held) {
-        return AISLE_STATUS_HELD;
-    }
-    if (aisle_planner_is_busy(self) && !mission->has_path) {
-        return AISLE_STATUS_PLANNING;
-    }
-    if (!mission->wanted) {
-        return AISLE_STATUS_IDLE;
-    }
-    int32_t id = 0;
-    int16_t stopped = mission->has_path ? aisle_planner_lease_hindrance(self, now_us, &id) : mission->cause;
-    if (stopped != 0 || !mission->has_path) {
-        *cause = stopped;
-        *cause_id = mission->has_path ? id : mission->cause_id;
-        return AISLE_STATUS_BLOCKED;
-    }
-    return AISLE_STATUS_ACTIVE;
-}
-
-// Distance and time left, from the waypoint nearest to the pose on.
-static void remaining(const aisle_planner *self, aisle_status_msg *status) {
-    const aisle_path_msg *path = self->mission.path;
-    if (!self->mission.has_path || path->num_waypoints < 1) {
-        return;
-    }
-    int16_t nearest = 0;
-    double least = -1.0;
-    for (int16_t i = 0; i < path->num_waypoints; i++) {
-        const aisle_waypoint_msg *w = &path->waypoints[i];
-        double away = aisle_vec2_distance(aisle_vec2_of(w->x, w->y), aisle_vec2_of(self->pose.x, self->pose.y));
-        if (least < 0.0 || away < least) {
-            least = away;
-            nearest = i;
-        }
-    }
-    status->distance_remaining = path->length - path->waypoints[nearest].s;
-    status->time_remaining = path->duration - path->waypoints[nearest].t;
-}
-
-static float age(bool known, int64_t now_us, int64_t since_us) {
-    return known ? (float)((double)(now_us - since_us) * 1e-6) : -1.0F;
-}
-
-void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status) {
-    const aisle_mission *mission = &self->mission;
-    int64_t now = now_us > self->now_us ? now_us : self->now_us;
-    *status = (aisle_status_msg){.utime = now_us,
-                                 .boot_id = self->config.boot_id,
-                                 .protocol = AISLE_PROTOCOL,
-                                 .map_id = aisle_layout_map_id(self->layout),
-                                 .map_revision = aisle_layout_map_revision(self->layout),
-                                 .vehicle_revision = self->has_vehicle ? self->vehicle.revision : 0,
-                                 .path_revision = self->path_revision,
-                                 .command_id = self->command_id,
-                                 .pose_age = age(self->has_pose, now, self->pose_at_us),
-                                 .obstacles_age = -1.0F,
-                                 .num_rejected = (int32_t)self->counters[AISLE_COUNTER_REJECTED]};
-    status->state = state_of(self, now, &status->cause, &status->cause_id);
-    if (mission->wanted) {
-        status->goal_list_id = mission->request.goal_list_id;
-        status->goal_list_revision = mission->request.goal_list_revision;
-        status->goal_id = mission->request.goals[mission->reached].id;
-    }
-    remaining(self, status);
-}
-
-const char *aisle_cause_name(int16_t cause) {
-    static const struct {
-        int16_t cause;
-        const char *name;
-    } names[] = {{0, "NONE"},
-                 {AISLE_STATUS_NO_LAYOUT, "NO_LAYOUT"},
-                 {AISLE_STATUS_NO_VEHICLE, "NO_VEHICLE"},
-                 {AISLE_STATUS_NO_POSE, "NO_POSE"},
-                 {AISLE_STATUS_POSE_STALE, "POSE_STALE"},
-                 {AISLE_STATUS_NOT_LOCALIZED, "NOT_LOCALIZED"},
-                 {AISLE_STATUS_POSE_OUTSIDE, "POSE_OUTSIDE"},
-                 {AISLE_STATUS_OBSTACLES_STALE, "OBSTACLES_STALE"},
-                 {AISLE_STATUS_MAP_MISMATCH, "MAP_MISMATCH"},
-                 {AISLE_STATUS_REVISION_GAP, "REVISION_GAP"},
-                 {AISLE_STATUS_OUTDATED, "OUTDATED"},
-                 {AISLE_STATUS_CONFLICT, "CONFLICT"},
-                 {AISLE_STATUS_MALFORMED, "MALFORMED"},
-                 {AISLE_STATUS_CLOCK_JUMP, "CLOCK_JUMP"},
-                 {AISLE_STATUS_START_OCCUPIED, "START_OCCUPIED"},
-                 {AISLE_STATUS_GOAL_OCCUPIED, "GOAL_OCCUPIED"},
-                 {AISLE_STATUS_GOAL_OUTSIDE, "GOAL_OUTSIDE"},
-                 {AISLE_STATUS_NO_PATH, "NO_PATH"},
-                 {AISLE_STATUS_BLOCKED_BY, "BLOCKED_BY"},
-                 {AISLE_STATUS_TOO_NARROW, "TOO_NARROW"},
-                 {AISLE_STATUS_KINEMATIC, "KINEMATIC"},
-                 {AISLE_STATUS_BUDGET, "BUDGET"},
-                 {AISLE_STATUS_YIELDING, "YIELDING"},
-                 {AISLE_STATUS_OFF_PATH, "OFF_PATH"},
-                 {AISLE_STATUS_LIMIT, "LIMIT"},
-                 {AISLE_STATUS_VERIFY_FAILED, "VERIFY_FAILED"},
-                 {AISLE_STATUS_WATCHDOG, "WATCHDOG"},
-                 {AISLE_STATUS_INTERNAL, "INTERNAL"}};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (names[i].cause == cause) {
-            return names[i].name;
-        }
-    }
-    return "?";
 }

@@ -6,10 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-bool aisle_planner_is_busy(const aisle_planner *self) {
-    return self->planning || self->building || self->queue_count > 0 || self->mission.replan;
-}
-
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id) {
     self->counters[AISLE_COUNTER_REJECTED]++;
     self->cause = cause;

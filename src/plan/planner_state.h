@@ -1,7 +1,7 @@
 // planner_state.h - what lies behind planner.h; for planner*.c alone. Level 4.
 //
-// planner.c: memory, step, events, status. planner_inputs.c: what each message does. planner_answer.c: paths and
-// reasons out.
+// planner.c: memory, step, events. planner_inputs.c: what each message does. planner_hindrance.c: what keeps a request or a
+// lease from going on. planner_answer.c: paths and reasons out. planner_status.c: the heartbeat, names of causes.
 #ifndef AISLE_PLAN_PLANNER_STATE_H
 #define AISLE_PLAN_PLANNER_STATE_H
 
@@ -66,8 +66,9 @@ struct aisle_planner {
     uint32_t row_count;
 };
 
-// planner.c
+// planner_hindrance.c
 
+bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
 // Why a request cannot even begin; cause 0: it can.
 aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request);
 // Why the mission's path must not be driven at now_us; 0: it may. *id: what is meant.
@@ -88,7 +89,6 @@ void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id);
 
 // planner_inputs.c
 
-bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
 // Has the mission planned again, if there is one.
 void aisle_planner_replan(aisle_planner *self);
 // The mission's request as it is now: the goals left, from the present pose.

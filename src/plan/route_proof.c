@@ -1,0 +1,263 @@
+#include "plan/route_stages.h"
+
+#include "base/check.h"
+
+#define RESERVE 3U // proofs' worth of work units kept back when the swarm starts
+
+// ---- BUILD, VERIFY
+
+void aisle_route_begin_build(aisle_route *self, aisle_proof *trial) {
+    self->trial = trial;
+    self->leg = 0;
+    self->stage = AISLE_ROUTE_BUILD;
+    self->compose.path = NULL; // not begun
+}
+
+static double beeline(const aisle_route *self) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        sum += aisle_vec2_distance(aisle_route_place(aisle_route_leg_start(self, i)),
+                                   aisle_route_place(&self->request.goals[i]));
+    }
+    return sum;
+}
+
+static void seal(aisle_route *self) {
+    aisle_path_msg *path = self->path;
+    bool swarm = self->trial == &self->better;
+    path->planner = swarm ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
+    path->work_units = (int32_t)self->spent;
+    float bound = (float)(beeline(self) * (1.0 - 1e-6));
+    path->length_bound = bound < path->length ? bound : path->length;
+    path->certificate = (int32_t)aisle_path_certificate(path);
+    aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, path, self->trial->bytes, AISLE_ROUTE_BYTES, &self->trial->size);
+    AISLE_ASSERT(st == AISLE_OK);
+}
+
+static void begin_verify(aisle_route *self) {
+    seal(self);
+    aisle_waypoint_msg *w = self->path->waypoints;
+    const aisle_goal_msg *start = &self->request.start;
+    bool any = aisle_goal_heading_is_free(start);
+    aisle_verify_request request = {.layout = self->layout,
+                                    .vehicle = self->vehicle,
+                                    .bytes = self->trial->bytes,
+                                    .size = self->trial->size,
+                                    .start = {start->x, start->y, any ? w[0].theta : start->theta},
+                                    .goals = self->request.goals,
+                                    .num_goals = (uint32_t)self->request.num_goals};
+    aisle_verify_start(&self->verify, &request, self->decoded);
+    self->stage = AISLE_ROUTE_VERIFY;
+}
+
+// The way built could not be proved or does not fit: what next?
+static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisle_vec2 place) {
+    if (self->trial == &self->better) {
+        self->stage = AISLE_ROUTE_END; // the first path stays
+        return AISLE_OK;
+    }
+    if (!self->stops && self->vehicle->curvature_max <= 0.0) {
+        self->stops = true;
+        aisle_route_begin_build(self, &self->first);
+        return AISLE_BUSY;
+    }
+    return aisle_route_refuse_at(self, cause, id, 0.0, place);
+}
+
+static aisle_compose_request build_request(aisle_route *self) {
+    return (aisle_compose_request){.space = &self->space,
+                                   .objective = &self->objective,
+                                   .options = &self->request.options,
+                                   .points = self->points,
+                                   .legs = self->legs,
+                                   .leg_count = (uint32_t)self->request.num_goals,
+                                   .start = &self->request.start,
+                                   .goals = self->request.goals,
+                                   .stops = self->stops && self->trial == &self->first};
+}
+
+aisle_status aisle_route_step_build(aisle_route *self, uint32_t units) {
+    aisle_status st = AISLE_BUSY;
+    if (self->compose.path == NULL) {
+        aisle_compose_request request = build_request(self);
+        st = aisle_compose_start(&self->compose, &request, self->path);
+        if (st != AISLE_OK) {
+            return fall_back(self, AISLE_STATUS_LIMIT, 0, aisle_route_place(&self->request.start));
+        }
+        return AISLE_BUSY;
+    }
+    st = aisle_compose_step(&self->compose, units, &self->spent);
+    if (st == AISLE_OK) {
+        begin_verify(self);
+    } else if (st != AISLE_BUSY) {
+        return fall_back(self, AISLE_STATUS_INTERNAL, 0, aisle_route_place(&self->request.start));
+    }
+    return AISLE_BUSY;
+}
+
+// What the path built is worth: what the objective means in full, stops and acceleration included, where the path's sums tell.
+static double path_value(const aisle_route *self) {
+    switch (self->objective.kind) {
+    case AISLE_OPTIONS_FASTEST:
+        return (double)self->path->duration;
+    case AISLE_OPTIONS_LEAST_ENERGY:
+        return (double)self->path->energy;
+    default:
+        break;
+    }
+    double value = 0.0;
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        const aisle_leg *leg = &self->legs[i];
+        value += leg->use_swarm ? leg->swarm_value : leg->seed_value;
+    }
+    return value;
+}
+
+static void begin_swarm_leg(aisle_route *self);
+
+static aisle_status after_first_proof(aisle_route *self) {
+    self->proof_units = self->spent;
+    // A disc's taut string cannot be beaten on length: AUTO leaves the swarm to other bodies (which it held to the
+    // turning disc) and other objectives.
+    bool taut_is_best = self->request.options.planner == AISLE_OPTIONS_AUTO &&
+                        aisle_objective_is_length(&self->objective) && aisle_vehicle_is_disc(self->vehicle);
+    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops) {
+        self->stage = AISLE_ROUTE_END;
+        return AISLE_OK;
+    }
+    self->leg = 0;
+    begin_swarm_leg(self);
+    if (!self->announced) {
+        self->announced = true;
+        return AISLE_PARTIAL;
+    }
+    return AISLE_BUSY;
+}
+
+// Leg the waypoint belongs to, by the goals passed before it.
+static uint32_t leg_of_waypoint(const aisle_route *self, uint32_t waypoint) {
+    uint32_t leg = 0;
+    for (uint32_t i = 0; i < waypoint && leg + 1U < (uint32_t)self->request.num_goals; i++) {
+        leg += (self->path->waypoints[i].flags & AISLE_WAYPOINT_GOAL) != 0 ? 1U : 0U;
+    }
+    return leg;
+}
+
+static bool any_swarm_leg(const aisle_route *self) {
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        if (self->legs[i].use_swarm) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Builds the better path again, or ends if no leg is left to the swarm.
+static aisle_status rebuild_better(aisle_route *self) {
+    if (!any_swarm_leg(self)) {
+        self->stage = AISLE_ROUTE_END;
+        return AISLE_OK;
+    }
+    aisle_route_begin_build(self, &self->better);
+    return AISLE_BUSY;
+}
+
+static aisle_status disproved(aisle_route *self) {
+    self->verify_failed++;
+    const aisle_verify *verify = &self->verify;
+    if (self->trial == &self->better) {
+        aisle_leg *leg = &self->legs[leg_of_waypoint(self, verify->fault_waypoint)];
+        if (leg->use_swarm) {
+            leg->use_swarm = false;
+            return rebuild_better(self);
+        }
+    }
+    bool body = verify->fault == AISLE_VERIFY_COLLISION || verify->fault == AISLE_VERIFY_CURVATURE ||
+                verify->fault == AISLE_VERIFY_HEADING || verify->fault == AISLE_VERIFY_START ||
+                verify->fault == AISLE_VERIFY_GOAL;
+    int16_t cause = body ? AISLE_STATUS_KINEMATIC : AISLE_STATUS_VERIFY_FAILED;
+    return fall_back(self, cause, body ? verify->fault_id : (int32_t)verify->fault, verify->fault_at);
+}
+
+// The better path is proved; legs that came out worse than their seeds go back to them, once.
+static aisle_status after_better_proof(aisle_route *self) {
+    bool worse = false;
+    bool by_name = self->request.options.planner == AISLE_OPTIONS_PSO;
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        aisle_leg *leg = &self->legs[i];
+        if (leg->use_swarm && !by_name && leg->swarm_value > leg->seed_value) {
+            leg->use_swarm = false;
+            worse = true;
+        }
+    }
+    if (worse) {
+        return rebuild_better(self);
+    }
+    self->better.ready = by_name || self->better.value <= self->first.value;
+    self->stage = AISLE_ROUTE_END;
+    return AISLE_OK;
+}
+
+aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
+    aisle_status st = aisle_verify_step(&self->verify, units, &self->spent, &self->trial->stamp);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    self->intervals += self->verify.intervals;
+    self->collide.calls += self->verify.collide.calls;
+    if (self->verify.collide.support_max > self->collide.support_max) {
+        self->collide.support_max = self->verify.collide.support_max;
+    }
+    if (st != AISLE_OK) {
+        return disproved(self);
+    }
+    self->trial->value = path_value(self);
+    if (self->trial == &self->better) {
+        return after_better_proof(self);
+    }
+    self->first.ready = true;
+    return after_first_proof(self);
+}
+
+// ---- SWARM
+
+// What the swarm may still spend.
+static uint32_t left_for_swarm(const aisle_route *self) {
+    uint64_t kept = (uint64_t)self->spent + (uint64_t)RESERVE * self->proof_units / 4U;
+    return kept < self->budget ? self->budget - (uint32_t)kept : 0U;
+}
+
+// Starts the swarm on the leg under way or a later one; goes on to build when there is none left.
+static void begin_swarm_leg(aisle_route *self) {
+    self->stage = AISLE_ROUTE_SWARM;
+    for (; self->leg < (uint32_t)self->request.num_goals; self->leg++) {
+        aisle_leg *leg = &self->legs[self->leg];
+        aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
+        if (leg->count >= 2U && left_for_swarm(self) > 0U &&
+            aisle_swarm_start(&self->swarm, &self->space, &self->objective, &self->request.options,
+                              self->points + leg->first, leg->count) == AISLE_OK) {
+            return;
+        }
+    }
+    if (!any_swarm_leg(self)) {
+        self->stage = AISLE_ROUTE_END;
+        return;
+    }
+    self->path->path_revision++;
+    aisle_route_begin_build(self, &self->better);
+}
+
+aisle_status aisle_route_step_swarm(aisle_route *self, uint32_t units) {
+    uint32_t left = left_for_swarm(self);
+    aisle_status st = aisle_swarm_step(&self->swarm, units < left ? units : left, &self->spent);
+    if (st == AISLE_BUSY && left_for_swarm(self) > 0U) {
+        return AISLE_BUSY;
+    }
+    aisle_leg *leg = &self->legs[self->leg];
+    self->swarm_evals += self->swarm.pso.evals;
+    leg->via_count = aisle_swarm_best(&self->swarm, leg->via);
+    leg->use_swarm = leg->via_count > 0U;
+    self->leg++;
+    begin_swarm_leg(self);
+    return self->stage == AISLE_ROUTE_END ? AISLE_OK : AISLE_BUSY;
+}
