@@ -5,10 +5,10 @@
 // legs - END. WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm
 // begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
-// Attempts at a seed, until one finds a way: the turning disc, then the exact body along the motion (not for discs), each first with
-// AISLE_ROUTE_STRIDE between search cells, then with every cell; between the two the proof of why.h: no way for the disc the
-// footprint holds, no search for the body. For pure length the disc starts with every cell: a narrow
-// passage is worth more there.
+// Attempts at a seed, until one finds a way: the turning disc, with AISLE_ROUTE_STRIDE between search cells, then with
+// every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
+// try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
+// motion, with a stride and without. For pure length the disc starts with every cell: a narrow passage is worth more.
 // Budget: work units of everything together; spent before a first proof: cause BUDGET; spent later: the first path is
 // the answer. If the verifier turns the seed path down it is built again with stops in all corners; if that fails too,
 // the cause is KINEMATIC (a way for the body exists, the turns it needs were not proved) or VERIFY_FAILED. Memory: from

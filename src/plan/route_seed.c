@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-#define ATTEMPTS_DISC 2U // at a seed, see route.h; the others are the body's
-#define ATTEMPTS 4U
+#define ATTEMPTS_CHEAP 2U // at a seed, see route.h
+#define ATTEMPTS 5U
 
 // ---- CHECK
 
@@ -86,16 +86,24 @@ static void begin_why(aisle_route *self) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
-// What the n-th attempt at a seed searches with.
-static uint32_t attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mode) {
-    *mode = n < ATTEMPTS_DISC ? AISLE_SPACE_FREE_TURN : AISLE_SPACE_ALONG;
-    return n % 2U == 0U ? coarse_stride(self) : 1U;
-}
-
-// Would the attempt only repeat another one?
-static bool attempt_is_idle(const aisle_route *self, uint32_t n, uint32_t stride) {
+// The n-th attempt at a seed. False: it is not for this vehicle, or would only repeat another one.
+static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mode, uint32_t *stride) {
+    static const struct {
+        aisle_space_mode mode;
+        bool coarse, roomiest, for_discs, for_bodies;
+    } attempts[ATTEMPTS] = {{AISLE_SPACE_FREE_TURN, true, false, true, true},
+                            {AISLE_SPACE_FREE_TURN, false, false, true, true},
+                            {AISLE_SPACE_FREE_TURN, false, true, true, false},
+                            {AISLE_SPACE_ALONG, true, false, false, true},
+                            {AISLE_SPACE_ALONG, false, false, false, true}};
     bool fine_first = n == 0U && aisle_objective_is_length(&self->objective);
-    return n % 2U == 0U && (stride == 1U || fine_first);
+    *mode = attempts[n].mode;
+    *stride = attempts[n].coarse ? coarse_stride(self) : 1U;
+    if (attempts[n].coarse && (*stride == 1U || fine_first)) {
+        return false;
+    }
+    *stride = attempts[n].roomiest ? AISLE_SEED_ROOMIEST : *stride;
+    return aisle_vehicle_is_disc(self->vehicle) ? attempts[n].for_discs : attempts[n].for_bodies;
 }
 
 // Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
@@ -111,12 +119,12 @@ static void begin_leg(aisle_route *self, uint32_t n) {
         self->seed.phase = AISLE_SEED_DONE;
         return;
     }
-    // Before the body's attempts the proof is asked whether there can be a way at all.
-    uint32_t end = n < ATTEMPTS_DISC || aisle_vehicle_is_disc(self->vehicle) ? ATTEMPTS_DISC : ATTEMPTS;
+    // Before the dear attempts the proof is asked whether there can be a way at all.
+    uint32_t end = n < ATTEMPTS_CHEAP ? ATTEMPTS_CHEAP : ATTEMPTS;
     for (; n < end; n++) {
-        uint32_t stride = attempt_of(self, n, &leg->mode);
+        uint32_t stride;
         leg->attempt = n;
-        if (attempt_is_idle(self, n, stride)) {
+        if (!attempt_of(self, n, &leg->mode, &stride)) {
             continue;
         }
         aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
@@ -153,8 +161,8 @@ aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
         return aisle_route_refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
     }
     if (st == AISLE_PARTIAL) {
-        if (leg->attempt + 1U == ATTEMPTS_DISC) {
-            begin_why(self); // it goes on with the body's attempts if there can be a way
+        if (leg->attempt + 1U == ATTEMPTS_CHEAP) {
+            begin_why(self); // it goes on with the other attempts if there can be a way
         } else {
             begin_leg(self, leg->attempt + 1U);
         }
@@ -181,8 +189,8 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units) {
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
     aisle_status st = aisle_why_step(&self->why, units, &self->spent);
     const aisle_why *why = &self->why;
-    if (st == AISLE_PARTIAL && !why->proved && self->legs[self->leg].attempt < ATTEMPTS_DISC) {
-        begin_leg(self, ATTEMPTS_DISC); // the body along the motion may still pass; nothing for a disc
+    if (st == AISLE_PARTIAL && !why->proved && self->legs[self->leg].attempt < ATTEMPTS_CHEAP) {
+        begin_leg(self, ATTEMPTS_CHEAP);
         return AISLE_BUSY;
     }
     if (st == AISLE_BUSY || st == AISLE_PARTIAL) {

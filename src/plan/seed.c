@@ -6,6 +6,7 @@
 #include <math.h>
 
 #define SEARCH_BATCH 32U // nodes
+#define DEAR_BATCH 3U    // nodes whose inlet may spend a thousand units
 #define CORNER_STEPS 32  // places tried along a leg
 #define WIDEST_ROOM 0.5  // m beyond the least clearance from which on the widest way does not care
 
@@ -54,6 +55,38 @@ static uint32_t enter_free_turn(void *ctx, uint32_t from, uint32_t to, uint8_t d
         return AISLE_ASTAR_BARRED_CELL;
     }
     return factor_of(self, cell);
+}
+
+// Where a cell of the ROOMIEST search stands. *sure: in its centre, with room for every step to another such. False: nowhere.
+static bool stand(aisle_seed *self, uint32_t cell, aisle_vec2 *at, bool *sure) {
+    aisle_space *space = self->space;
+    const aisle_lattice *lattice = &space->grid->lattice;
+    *at = aisle_lattice_centre(lattice, cell);
+    *sure = aisle_space_cell_free(space, cell, lattice->res, &self->units);
+    if (*sure) {
+        return true;
+    }
+    double most =
+        (sqrt((double)space->grid->field[cell]) + 0.7072) * lattice->res + space->beyond; // of any point of it
+    if (most < space->reach) {
+        return false;
+    }
+    double gap;
+    *at = aisle_space_roomiest(space, cell, &gap, &self->units);
+    return gap >= space->reach;
+}
+
+static uint32_t enter_roomiest(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
+    aisle_seed *self = (aisle_seed *)ctx;
+    (void)dir;
+    aisle_vec2 a, b;
+    bool a_sure, b_sure;
+    if (!stand(self, to, &b, &b_sure)) {
+        return AISLE_ASTAR_BARRED_CELL;
+    }
+    bool free = stand(self, from, &a, &a_sure) &&
+                ((a_sure && b_sure) || aisle_space_sweep_free(self->space, a, b, &self->units));
+    return free ? factor_of(self, to) : AISLE_ASTAR_BARRED;
 }
 
 static uint32_t enter_along(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
@@ -165,7 +198,9 @@ static aisle_astar_config search_config(aisle_seed *self, aisle_astar_enter_fn e
 
 aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, uint32_t stride,
                               aisle_vec2 start, aisle_vec2 goal, aisle_vec2 *points) {
-    AISLE_ASSERT(stride >= 1U);
+    self->roomiest = stride == AISLE_SEED_ROOMIEST;
+    stride = self->roomiest ? 1U : stride;
+    AISLE_ASSERT(!self->roomiest || space->mode == AISLE_SPACE_FREE_TURN);
     uint32_t least = space->grid->lattice.w < space->grid->lattice.h ? space->grid->lattice.w : space->grid->lattice.h;
     self->stride = stride <= least ? stride : least;
     self->space = space;
@@ -177,7 +212,8 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
     self->units = 0;
     self->for_refusal = false;
     tabulate(self);
-    aisle_astar_config cfg = search_config(self, space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along);
+    aisle_astar_enter_fn enter = space->mode == AISLE_SPACE_FREE_TURN ? enter_free_turn : enter_along;
+    aisle_astar_config cfg = search_config(self, self->roomiest ? enter_roomiest : enter);
     self->search.cfg.w = cfg.w; // grid_cell() needs it before the search has begun
     if (!join(self, &cfg, start, true, &cfg.start) || !join(self, &cfg, goal, false, &cfg.goal)) {
         self->phase = AISLE_SEED_IDLE;
@@ -189,14 +225,19 @@ aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_
     return AISLE_OK;
 }
 
-static aisle_vec2 path_point(const aisle_seed *self, uint32_t i) {
+static aisle_vec2 path_point(aisle_seed *self, uint32_t i) {
     if (i == 0) {
         return self->start;
     }
     if (i > self->cell_count) {
         return self->goal;
     }
-    return aisle_lattice_centre(&self->space->grid->lattice, self->cells[i - 1U]);
+    aisle_vec2 at = aisle_lattice_centre(&self->space->grid->lattice, self->cells[i - 1U]);
+    bool sure;
+    if (self->roomiest) {
+        (void)stand(self, self->cells[i - 1U], &at, &sure);
+    }
+    return at;
 }
 
 // Cost of the way along the path's points from i to j.
@@ -321,9 +362,11 @@ static aisle_status widen_corners(aisle_seed *self, uint32_t units) {
 // the slices make no difference.
 static aisle_status search(aisle_seed *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;
+    bool dear = self->roomiest || (self->for_refusal && self->search.cfg.enter == enter_proof);
+    uint32_t batch = dear ? DEAR_BATCH : SEARCH_BATCH;
     while (st == AISLE_BUSY && self->units < units) {
         uint32_t before = self->search.expanded;
-        st = aisle_astar_step(&self->search, SEARCH_BATCH);
+        st = aisle_astar_step(&self->search, batch);
         self->units += self->search.expanded - before + 1U; // 1: a batch of stale entries is work too
     }
     return st;
@@ -387,6 +430,7 @@ static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 s
                               aisle_astar_enter_fn enter) {
     self->space = space;
     self->for_refusal = true;
+    self->roomiest = false;
     self->stride = stride;
     self->units = 0;
     self->phase = AISLE_SEED_SEARCH;

@@ -6,6 +6,8 @@
 // Stride: the search may look at every k-th cell only. A straight passage 1.25 strides wider than the turning disc with
 // its margin (of a radius of two strides or more) is never lost by that; the caller tries stride 1 when a larger one
 // finds nothing.
+// ROOMIEST, for discs: every cell, and one whose centre has not the room stands at the roomiest point found in it, the moves
+// there tested exactly: finds slits narrower than a cell without a finer grid, at some 60 exact gaps a cell along contours.
 // Ends: start and goal are joined to the nearest free cell centre that the exact footprint reaches straight, heading
 // along the way, within AISLE_SEED_JOIN m: a station may be too tight to turn in.
 // Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping,
@@ -28,6 +30,7 @@
 #define AISLE_SEED_CELLS_MAX 65536U // cells of a path
 #define AISLE_SEED_POINTS_MAX 256U  // points of a leg's polyline
 #define AISLE_SEED_JOIN 1.5         // m
+#define AISLE_SEED_ROOMIEST 0U      // a stride: see above
 #define AISLE_SEED_TABLE 16384U     // field values with a tabulated factor
 
 typedef enum aisle_seed_phase {
@@ -44,6 +47,7 @@ typedef struct aisle_seed {
     aisle_astar search;
     aisle_vec2 start, goal;
     uint32_t stride; // cells between neighbours of the search
+    bool roomiest;
     uint32_t *cells; // [AISLE_SEED_CELLS_MAX]
     uint32_t cell_count, at;
     uint16_t *factor;   // [AISLE_SEED_TABLE] by field value
@@ -59,7 +63,7 @@ typedef struct aisle_seed {
 
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits);
 
-// Begins the search of a leg; stride >= 1. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined
+// Begins the search of a leg; stride >= 1 or AISLE_SEED_ROOMIEST. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined
 // (nothing begun).
 aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, uint32_t stride,
                               aisle_vec2 start, aisle_vec2 goal, aisle_vec2 *points);

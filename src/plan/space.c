@@ -149,6 +149,28 @@ bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint
     return true;
 }
 
+aisle_vec2 aisle_space_roomiest(const aisle_space *self, uint32_t cell, double *gap, uint32_t *units) {
+    static const double direction[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    double res = self->grid->lattice.res;
+    double cap = self->reach + res;
+    aisle_vec2 centre = aisle_lattice_centre(&self->grid->lattice, cell);
+    aisle_vec2 best = centre;
+    *gap = point_gap(self, best, cap);
+    for (double step = 0.25 * res; step > res / 512.0; step *= 0.5) {
+        aisle_vec2 from = best;
+        for (int k = 0; k < 8; k++) {
+            aisle_vec2 p = aisle_vec2_of(from.x + step * direction[k][0], from.y + step * direction[k][1]);
+            double here = point_gap(self, p, cap);
+            if (here > *gap) {
+                *gap = here;
+                best = p;
+            }
+        }
+        *units += 8U;
+    }
+    return best; // the steps sum up to less than half a cell: never outside
+}
+
 // The exact footprint driven straight from a to b, heading along it.
 static bool body_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, double theta) {
     aisle_vec2 both[2 * AISLE_SHAPE_VERTICES_MAX];

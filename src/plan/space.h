@@ -48,6 +48,10 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
 // reach from it.) Remembered: within one begin() step must not grow.
 bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32_t *units);
 
+// The roomiest point of a cell, climbed to from its centre by a pattern search (8 directions, halving down to 1/256 of a
+// cell): a local maximum of the exact gap, deterministic. *gap: there, m, at most reach + a cell. About 60 exact gaps.
+aisle_vec2 aisle_space_roomiest(const aisle_space *self, uint32_t cell, double *gap, uint32_t *units);
+
 // Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b: false.
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 

@@ -237,6 +237,33 @@ static void test_any_slicing_gives_the_same_bytes_and_units(void) {
     }
 }
 
+// A wall with a slit wider than the disc and its margins by `spare`, at any place between the cells' centres.
+static int slits_found(double spare) {
+    int found = 0;
+    for (int k = 0; k < 10; k++) {
+        double low = 3.0 + 0.0051 * k;
+        hall_begin(10.0, 6.0);
+        hall_add(4.75, -1.0, 5.25, low);
+        hall_add(4.75, low + 0.8 + spare, 5.25, 7.0);
+        hall_disc(0.3, 0.1F);
+        open_hall();
+        ask(AISLE_OPTIONS_AUTO, 1.0, 1.0, 9.0, 1.0);
+        request.options.objective = AISLE_OPTIONS_SHORTEST;
+        (void)plan(1000);
+        if (aisle_route_answer(&route) != NULL) {
+            (void)proof();
+            found++;
+        }
+    }
+    return found;
+}
+
+static void test_slits_far_narrower_than_a_cell_are_found_wherever_they_lie(void) {
+    TEST_ASSERT_EQUAL(10, slits_found(0.06));
+    TEST_ASSERT_EQUAL(10, slits_found(0.018));
+    TEST_ASSERT_EQUAL(10, slits_found(0.002)); // half a millimetre on either side is the proof's
+}
+
 static void test_a_long_body_takes_an_aisle_narrower_than_its_diagonal_along_it(void) {
     hall_rectangle(1.6, 0.5, 0.05F);
     hall_begin(12.0, 8.0);
@@ -341,6 +368,7 @@ int main(void) {
     RUN_TEST(test_budgets_end_with_budget_before_the_first_proof_and_with_it_after);
     RUN_TEST(test_a_swarm_cut_short_leaves_enough_to_prove_its_path);
     RUN_TEST(test_any_slicing_gives_the_same_bytes_and_units);
+    RUN_TEST(test_slits_far_narrower_than_a_cell_are_found_wherever_they_lie);
     RUN_TEST(test_a_long_body_takes_an_aisle_narrower_than_its_diagonal_along_it);
     RUN_TEST(test_a_bend_no_body_can_take_is_kinematic_with_its_place);
     RUN_TEST(test_curves_a_vehicle_cannot_drive_are_kinematic);
