@@ -147,7 +147,8 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event);
 // When step() next has something to do by itself (lease, pose timeout); INT64_MAX: never.
 int64_t aisle_planner_next_deadline(const aisle_planner *self);
 
-// The heartbeat as it stands at now_us; seq is the caller's to set. cause: why the state is what it is (BLOCKED, WAITING),
+// The heartbeat as it stands at now_us; seq is the caller's to set. cause: why the state is what it is (BLOCKED,
+// WAITING),
 // else that of the last refused input, until one of its kind is taken. O(waypoints).
 void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status);
 
@@ -160,7 +161,8 @@ size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, s
 // Reads an event's bytes. AISLE_ERR_DATA: not a path_t (never for bytes of an event). O(waypoints).
 aisle_status aisle_path_decode(const void *bytes, size_t size, aisle_path_msg *path);
 
-// Goes on with the crc32 a layout_t carries, over the polygons of one part after those of the parts before (crc, at first 0).
+// Goes on with the crc32 a layout_t carries, over the polygons of one part after those of the parts before (crc, at
+// first 0).
 uint32_t aisle_layout_crc32(uint32_t crc, const aisle_layout_msg *part);
 
 // Text of a cause of status_msg/path_msg ("NO_PATH"); "?" for an unknown one. O(1).

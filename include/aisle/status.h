@@ -18,7 +18,8 @@ typedef enum aisle_status {
     AISLE_ERR_DATA = -3      // a message was refused; its cause says why
 } aisle_status;
 
-// Supplied by the program that links the library (a firmware resets, a daemon says where and aborts); must not return. Called
+// Supplied by the program that links the library (a firmware resets, a daemon says where and aborts); must not
+// return. Called
 // when an invariant of the library does not hold, never because of input.
 void aisle_assert_failed(const char *file, int line, const char *condition);
 

@@ -1,6 +1,7 @@
 // planner_state.h - what lies behind planner.h; for planner*.c alone. Level 4.
 //
-// planner.c: memory, step, events. planner_inputs.c: what each message does. planner_hindrance.c: what keeps a request or a
+// planner.c: memory, step, events. planner_inputs.c: what each message does. planner_hindrance.c: what keeps a
+// request or a
 // lease from going on. planner_answer.c: paths and reasons out. planner_status.c: the heartbeat, names of causes.
 #ifndef AISLE_PLAN_PLANNER_STATE_H
 #define AISLE_PLAN_PLANNER_STATE_H

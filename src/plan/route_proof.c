@@ -95,7 +95,8 @@ aisle_status aisle_route_step_build(aisle_route *self, uint32_t units) {
     return AISLE_BUSY;
 }
 
-// What the path built is worth: what the objective means in full, stops and acceleration included, where the path's sums tell.
+// What the path built is worth: what the objective means in full, stops and acceleration included, where the path's
+// sums tell.
 static double path_value(const aisle_route *self) {
     switch (self->objective.kind) {
     case AISLE_OPTIONS_FASTEST:

@@ -1,7 +1,9 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_seed.c: CHECK, SEED, TAUT, WHY. route_proof.c: BUILD, VERIFY, SWARM.
-// Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has ended.
+// route.c: memory, budget, the order of stages. route_seed.c: CHECK, SEED, TAUT, WHY. route_proof.c: BUILD, VERIFY,
+// SWARM.
+// Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
+// ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
 #define AISLE_PLAN_ROUTE_STAGES_H
 

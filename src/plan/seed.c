@@ -57,7 +57,8 @@ static uint32_t enter_free_turn(void *ctx, uint32_t from, uint32_t to, uint8_t d
     return factor_of(self, cell);
 }
 
-// Where a cell of the ROOMIEST search stands. *sure: in its centre, with room for every step to another such. False: nowhere.
+// Where a cell of the ROOMIEST search stands. *sure: in its centre, with room for every step to another such. False:
+// nowhere.
 static bool stand(aisle_seed *self, uint32_t cell, aisle_vec2 *at, bool *sure) {
     aisle_space *space = self->space;
     const aisle_lattice *lattice = &space->grid->lattice;
@@ -358,7 +359,8 @@ static aisle_status widen_corners(aisle_seed *self, uint32_t units) {
     return self->at + 1U < self->point_count ? AISLE_BUSY : AISLE_OK;
 }
 
-// Expands nodes until `units` are spent: in small batches, since the inlets spend too, and always the same ones, so that
+// Expands nodes until `units` are spent: in small batches, since the inlets spend too, and always the same ones, so
+// that
 // the slices make no difference.
 static aisle_status search(aisle_seed *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;

@@ -6,8 +6,10 @@
 // Stride: the search may look at every k-th cell only. A straight passage 1.25 strides wider than the turning disc with
 // its margin (of a radius of two strides or more) is never lost by that; the caller tries stride 1 when a larger one
 // finds nothing.
-// ROOMIEST, for discs: every cell, and one whose centre has not the room stands at the roomiest point found in it, the moves
-// there tested exactly: finds slits narrower than a cell without a finer grid, at some 60 exact gaps a cell along contours.
+// ROOMIEST, for discs: every cell, and one whose centre has not the room stands at the roomiest point found in it,
+// the moves
+// there tested exactly: finds slits narrower than a cell without a finer grid, at some 60 exact gaps a cell along
+// contours.
 // Ends: start and goal are joined to the nearest free cell centre that the exact footprint reaches straight, heading
 // along the way, within AISLE_SEED_JOIN m: a station may be too tight to turn in.
 // Straightening: from each kept point the farthest cell along the path that a free straight way reaches (galloping,
@@ -63,7 +65,8 @@ typedef struct aisle_seed {
 
 void aisle_seed_carve(aisle_seed *self, aisle_arena *arena, const aisle_limits *limits);
 
-// Begins the search of a leg; stride >= 1 or AISLE_SEED_ROOMIEST. AISLE_OK, or AISLE_PARTIAL: no free cell near start or goal can be joined
+// Begins the search of a leg; stride >= 1 or AISLE_SEED_ROOMIEST. AISLE_OK, or AISLE_PARTIAL: no free cell near start
+// or goal can be joined
 // (nothing begun).
 aisle_status aisle_seed_start(aisle_seed *self, aisle_space *space, const aisle_objective *objective, uint32_t stride,
                               aisle_vec2 start, aisle_vec2 goal, aisle_vec2 *points);
@@ -83,6 +86,7 @@ void aisle_seed_start_widest(aisle_seed *self, aisle_space *space, aisle_vec2 st
                              uint32_t open_from);
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent);
 
-// After step_refusal() said AISLE_OK: cells[0..cell_count) of the grid, from start to goal. AISLE_ERR_CAPACITY: too many.
+// After step_refusal() said AISLE_OK: cells[0..cell_count) of the grid, from start to goal. AISLE_ERR_CAPACITY: too
+// many.
 aisle_status aisle_seed_refusal_path(aisle_seed *self);
 #endif

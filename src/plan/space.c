@@ -41,7 +41,8 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
     self->mode = mode;
     self->keep = vehicle->margin + AISLE_SPACE_SLACK;
     self->reach = self->keep + (mode == AISLE_SPACE_FREE_TURN ? vehicle->outer_radius : vehicle->inner_radius);
-    // A scanned cell is an obstacle all over and holds a disc of half its side; a cell some polygon touches may be all but free.
+    // A scanned cell is an obstacle all over and holds a disc of half its side; a cell some polygon touches may be
+    // all but free.
     bool solid = aisle_layout_has_scan(layout) && aisle_layout_zone_count(layout) == 0U;
     self->beyond = self->grid->lattice.res * (solid ? -0.5 : HALF_DIAGONAL);
     self->lever = 0.0;

@@ -43,23 +43,28 @@ void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells);
 void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        aisle_space_mode mode);
 
-// FREE_TURN: may the disc stand in the cell's centre so that every move of `step` (m, straight; diagonal sqrt(2) of it) to
+// FREE_TURN: may the disc stand in the cell's centre so that every move of `step` (m, straight; diagonal sqrt(2) of
+// it) to
 // another such centre is free? (Both ends at least sqrt(reach^2 + step^2 / 2) from a point keep the segment at least
 // reach from it.) Remembered: within one begin() step must not grow.
 bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32_t *units);
 
-// The roomiest point of a cell, climbed to from its centre by a pattern search (8 directions, halving down to 1/256 of a
+// The roomiest point of a cell, climbed to from its centre by a pattern search (8 directions, halving down to 1/256
+// of a
 // cell): a local maximum of the exact gap, deterministic. *gap: there, m, at most reach + a cell. About 60 exact gaps.
 aisle_vec2 aisle_space_roomiest(const aisle_space *self, uint32_t cell, double *gap, uint32_t *units);
 
-// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b: false.
+// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b:
+// false.
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Can the body turn to any heading at p?
 bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *units);
 
-// Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap, `depth` halvings
-// deep, at most AISLE_SPACE_DEPTH_MAX: "no" is a proof; "yes" may be wrong by 2^-depth of a cell's half diagonal. A yes is
+// Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap, `depth`
+// halvings
+// deep, at most AISLE_SPACE_DEPTH_MAX: "no" is a proof; "yes" may be wrong by 2^-depth of a cell's half diagonal. A
+// yes is
 // remembered until forget(), so reach and depth stay the same meanwhile.
 bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units);
 void aisle_space_forget(aisle_space *self); // O(cells / 64)
@@ -73,7 +78,8 @@ double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, in
 // Is p so far from everything that the margin is kept at every heading and no objective cares? One look at the field.
 bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p);
 
-// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius; far_clearance where far.
+// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius;
+// far_clearance where far.
 // Cheap; for costs only.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 

@@ -5,35 +5,47 @@
 // distance field), narrow phase by libccd (world/collide.h). Files: verify_piece.c (curve), verify_limits.c (what the
 // vehicle can do), verify_motion.c (collision proof), verify.c (order of it all), release.c (the way out).
 //
-// Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal within 1e-9 m,
+// Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal within
+// 1e-9 m,
 // curvature 0), else a straight line if curvature k of i is 0, else the minor arc; |k| * chord / 2 <= 1 + 1e-6, above 1
-// read as the half circle. Equal places without TURN_IN_PLACE are no piece. theta changes linearly, the short way; within
+// read as the half circle. Equal places without TURN_IN_PLACE are no piece. theta changes linearly, the short way;
+// within
 // 1e-6 of half a turn both ways are proved, since rounding decides which one a receiver takes.
 // For an interval of a piece with origin travel L, curvature k, turn b, every body point at distance r from the origin
 // stays within
 //     d = |k| L^2 / 8 + r b^2 / 8
 // of the straight way between its end positions (|f - chord| <= max|f''| / 8 for the origin's arc and the rotation), so
-// the hull of the footprint at both end poses, grown by margin + d + AISLE_VERIFY_EPSILON, covers the whole interval. If that
+// the hull of the footprint at both end poses, grown by margin + d + AISLE_VERIFY_EPSILON, covers the whole interval.
+// If that
 // hull is free the interval is proved; else it is halved; below 1 mm of travel of every body point it is a collision.
-// Straight pieces without turn have d = 0: one exact test. Intervals above 1 m are halved unseen so that boxes stay small.
-// So a path is refused only if the footprint comes closer than margin + 2e-6 m, or, where it turns, margin + 0.6 mm: a hull
+// Straight pieces without turn have d = 0: one exact test. Intervals above 1 m are halved unseen so that boxes stay
+// small.
+// So a path is refused only if the footprint comes closer than margin + 2e-6 m, or, where it turns, margin + 0.6 mm:
+// a hull
 // over 1 mm of travel reaches at most 0.5 mm beyond the nearer of its ends.
 // Free means: clear of every OBSTACLE and KEEPOUT polygon and occupied scan cell, and inside the bounds and the scan.
 // Where a piece may be driven faster than creep_speed, creep_clearance * (1 - 1e-3) is proved instead of the margin, if
-// more. The moving speed of a piece is the larger of its ends'; if both ends are at rest, the peak of the trapezoid with
+// more. The moving speed of a piece is the larger of its ends'; if both ends are at rest, the peak of the trapezoid
+// with
 // a_max and d_max that fills the time between them (a reached goal's dwell taken off).
 //
 // Also checked, with relative tolerance 1e-3 + float rounding where not said otherwise:
-// - status OK, PARTIAL or STOP (read as PARTIAL), 1..1024 waypoints, numbers finite, places within 1e5 m, theta in [-pi, pi],
+// - status OK, PARTIAL or STOP (read as PARTIAL), 1..1024 waypoints, numbers finite, places within 1e5 m, theta in
+// [-pi, pi],
 //   base within the path, energy >= 0, risk in [0, 1], clearances >= 0;
-// - first waypoint within 1e-6 of the start; GOAL waypoints are the caller's goals in order, within their tolerance; OK: all of
+// - first waypoint within 1e-6 of the start; GOAL waypoints are the caller's goals in order, within their tolerance;
+// OK: all of
 //   them, the last one at the last waypoint. A goal with dwell is a stop;
-// - s and t start at 0; s is the sum of lengths (1e-4 m + 3e-5 s); t strictly rising and fits length and speeds: 2 L / (v0 + v1) each
+// - s and t start at 0; s is the sum of lengths (1e-4 m + 3e-5 s); t strictly rising and fits length and speeds: 2 L
+// / (v0 + v1) each
 //   piece (at most 1.1 ms longer: times are 1 ms apart), both ends at rest: no shorter than the trapezoid;
-// - speeds in [0, v_max or v_reverse_max], |v1^2 - v0^2| <= 2 L a_max or d_max, `a` = that / 2 L on the piece that ends there,
-//   v^2 |k| <= lateral_a_max, v |turn| / L <= omega_max, turns on the spot no faster than omega_max and alpha_max let them;
+// - speeds in [0, v_max or v_reverse_max], |v1^2 - v0^2| <= 2 L a_max or d_max, `a` = that / 2 L on the piece that
+// ends there,
+//   v^2 |k| <= lateral_a_max, v |turn| / L <= omega_max, turns on the spot no faster than omega_max and alpha_max let
+// them;
 // - |k| <= curvature_max if that is not 0; a turn on the spot (but for a mere wait) only if it is 0;
-// - heading within 2e-3 rad of the direction of motion at both ends of a piece (backwards with REVERSE) and turning as the
+// - heading within 2e-3 rad of the direction of motion at both ends of a piece (backwards with REVERSE) and turning
+// as the
 //   curve does, unless OMNI; OMNI: direction of motion steady within 4e-3 rad where it moves;
 // - rest (below 1e-6 m/s) at first and last waypoint, STOP, both ends of turns, and where REVERSE changes;
 // - length, duration equal the waypoints' sums; 0 <= length_bound <= length; clearance_min not above any piece's;
@@ -143,8 +155,10 @@ typedef struct aisle_verify {
 // changes meanwhile is a CERTIFICATE fault, bytes that do are a DECODE fault. O(1).
 void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request, aisle_path_msg *decoded);
 
-// Looks at no more than `units` intervals (one unit each; fixed checks count 1 a waypoint and 1 for the rest). AISLE_BUSY;
-// AISLE_OK: proved, *stamp written; AISLE_ERR_DATA: fault says why, *stamp zeroed (as with AISLE_BUSY). *spent is added to.
+// Looks at no more than `units` intervals (one unit each; fixed checks count 1 a waypoint and 1 for the rest).
+// AISLE_BUSY;
+// AISLE_OK: proved, *stamp written; AISLE_ERR_DATA: fault says why, *stamp zeroed (as with AISLE_BUSY). *spent is
+// added to.
 // Further calls repeat the answer and cost nothing. However cut into steps, answer and counts are the same.
 aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spent, aisle_stamp *stamp);
 
@@ -155,7 +169,8 @@ aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spe
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
                            aisle_event *event);
 
-// crc32 over the waypoints as encoded (in order), then over path_revision, query_id, goal_list_id, goal_list_revision, map_id, map_revision,
+// crc32 over the waypoints as encoded (in order), then over path_revision, query_id, goal_list_id,
+// goal_list_revision, map_id, map_revision,
 // vehicle_revision as 4 big-endian bytes each. The path's `certificate`.
 uint32_t aisle_path_certificate(const aisle_path_msg *path);
 #endif

@@ -2,7 +2,8 @@
 //
 // 1. Proof: does an optimistic grid (seed.h, PROOF) for the disc that the footprint holds plus the margin still
 // connect? If not, no way
-//    exists at any heading. Roughly first, since most gaps are far too narrow or far too wide. If it does, nothing is proved: the way may pass below the grid's resolution, or need
+//    exists at any heading. Roughly first, since most gaps are far too narrow or far too wide. If it does, nothing is
+// proved: the way may pass below the grid's resolution, or need
 //    manoeuvres.
 // 2. The widest way: bisection over the field's values for the largest one whose cells still connect, to half a cell,
 //    on every k-th cell first, on all if those do not connect at all; 1 fails too: walled in.
@@ -42,7 +43,8 @@ typedef struct aisle_why {
 void aisle_why_start(aisle_why *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
                      uint32_t stride);
 
-// AISLE_BUSY; AISLE_PARTIAL: step 1 has just ended, `proved` stands (once; call again for the rest); AISLE_OK: answered;
+// AISLE_BUSY; AISLE_PARTIAL: step 1 has just ended, `proved` stands (once; call again for the rest); AISLE_OK:
+// answered;
 // AISLE_ERR_CAPACITY: the open list is full.
 aisle_status aisle_why_step(aisle_why *self, uint32_t units, uint32_t *spent);
 #endif

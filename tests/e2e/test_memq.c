@@ -1,4 +1,5 @@
-// The whole daemon on liblcm's in-process bus, the client speaking through lcm-gen's own C code: layout, query and goal list in;
+// The whole daemon on liblcm's in-process bus, the client speaking through lcm-gen's own C code: layout, query and
+// goal list in;
 // answers, path with its lease, status and diag out.
 #include "daemon/loop.h"
 
