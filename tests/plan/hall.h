@@ -6,6 +6,7 @@
 
 #include "base/arena.h"
 #include "base/crc32.h"
+#include "base/rng.h"
 #include "robot/vehicle.h"
 #include "unity.h"
 #include "wire/codec.h"
@@ -80,6 +81,19 @@ HALL_UNUSED void hall_rectangle(double length, double width, float margin) {
     memcpy(msg.footprint, v, sizeof v);
     aisle_refusal why;
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_vehicle_from_msg(&msg, &hall_vehicle, &why));
+}
+
+// ---- draws
+
+HALL_UNUSED double uniform(aisle_rng *rng, double lo, double hi) {
+    return lo + (hi - lo) * (double)aisle_rng_float(rng);
+}
+
+// x before y: the order in which a call's arguments are computed is the compiler's.
+HALL_UNUSED aisle_vec2 uniform_point(aisle_rng *rng, aisle_vec2 lo, aisle_vec2 hi) {
+    double x = uniform(rng, lo.x, hi.x);
+    double y = uniform(rng, lo.y, hi.y);
+    return aisle_vec2_of(x, y);
 }
 
 // ---- judge

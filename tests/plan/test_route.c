@@ -2,8 +2,6 @@
 
 #include "door.h"
 
-#include "base/rng.h"
-
 enum { SEEDS = 10 };
 
 static aisle_route route;
@@ -77,17 +75,6 @@ void setUp(void) {
     pillar_hall();
 }
 void tearDown(void) {}
-
-static double uniform(aisle_rng *rng, double lo, double hi) {
-    return lo + (hi - lo) * (double)aisle_rng_float(rng);
-}
-
-// x before y: the order in which a call's arguments are computed is the compiler's.
-static aisle_vec2 uniform_point(aisle_rng *rng, aisle_vec2 lo, aisle_vec2 hi) {
-    double x = uniform(rng, lo.x, hi.x);
-    double y = uniform(rng, lo.y, hi.y);
-    return aisle_vec2_of(x, y);
-}
 
 static void random_hall(aisle_rng *rng) {
     hall_begin(12.0, 8.0);

@@ -2,8 +2,6 @@
 
 #include "hall.h"
 
-#include "base/rng.h"
-
 enum { SEEDS = 12, FINE_MAX = 700 * 500 };
 
 static aisle_space space;
@@ -11,17 +9,6 @@ static aisle_seed seed;
 static aisle_objective objective;
 static aisle_vec2 points[AISLE_SEED_POINTS_MAX];
 static uint32_t spent;
-
-static double uniform(aisle_rng *rng, double lo, double hi) {
-    return lo + (hi - lo) * (double)aisle_rng_float(rng);
-}
-
-// x before y: the order in which a call's arguments are computed is the compiler's.
-static aisle_vec2 uniform_point(aisle_rng *rng, aisle_vec2 lo, aisle_vec2 hi) {
-    double x = uniform(rng, lo.x, hi.x);
-    double y = uniform(rng, lo.y, hi.y);
-    return aisle_vec2_of(x, y);
-}
 
 // Walls every which way: about half of the pairs of places do not connect.
 static void random_hall(aisle_rng *rng) {

@@ -2,24 +2,12 @@
 
 #include "hall.h"
 
-#include "base/rng.h"
 #include "robot/curve.h"
 
 enum { SEEDS = 16 };
 
 static aisle_space space;
 static uint32_t units;
-
-static double uniform(aisle_rng *rng, double lo, double hi) {
-    return lo + (hi - lo) * (double)aisle_rng_float(rng);
-}
-
-// Drawn in one order with every compiler.
-static aisle_vec2 random_point(aisle_rng *rng, double x0, double x1, double y0, double y1) {
-    double x = uniform(rng, x0, x1);
-    double y = uniform(rng, y0, y1);
-    return aisle_vec2_of(x, y);
-}
 
 static void random_hall(aisle_rng *rng) {
     hall_begin(12.0, 9.0);
@@ -86,8 +74,8 @@ static void sweeps_agree_with_dense_sampling(aisle_space_mode mode, int least_fr
         random_hall(&rng);
         open_space(mode);
         for (int k = 0; k < 25; k++) {
-            aisle_vec2 a = random_point(&rng, 0.0, 12.0, 0.0, 9.0);
-            aisle_vec2 way = random_point(&rng, -2.0, 2.0, -2.0, 2.0);
+            aisle_vec2 a = uniform_point(&rng, aisle_vec2_of(0.0, 0.0), aisle_vec2_of(12.0, 9.0));
+            aisle_vec2 way = uniform_point(&rng, aisle_vec2_of(-2.0, -2.0), aisle_vec2_of(2.0, 2.0));
             aisle_vec2 b = aisle_vec2_add(a, way);
             bool free = aisle_space_sweep_free(&space, a, b, &units);
             double gap = sampled_sweep_gap(a, b);
@@ -115,7 +103,7 @@ static void test_free_turn_stands_for_every_heading(void) {
         random_hall(&rng);
         open_space(AISLE_SPACE_FREE_TURN);
         for (int k = 0; k < 20; k++) {
-            aisle_vec2 p = random_point(&rng, 0.0, 12.0, 0.0, 9.0);
+            aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(0.0, 0.0), aisle_vec2_of(12.0, 9.0));
             if (!aisle_space_sweep_free(&space, p, p, &units)) {
                 continue;
             }
@@ -135,7 +123,7 @@ static void test_turn_free_is_told_just_where_the_turning_disc_keeps_the_margin(
         random_hall(&rng);
         open_space(AISLE_SPACE_ALONG);
         for (int k = 0; k < 200; k++) {
-            aisle_vec2 p = random_point(&rng, 0.0, 12.0, 0.0, 9.0);
+            aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(0.0, 0.0), aisle_vec2_of(12.0, 9.0));
             double gap = (double)hall_disc_gap(p.x, p.y, hall_vehicle.outer_radius) - space.keep;
             bool free = aisle_space_turn_free(&space, p, &units);
             TEST_ASSERT_FALSE(free && gap < -1e-9);
@@ -181,7 +169,7 @@ static void test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_ev
             double theta = uniform(&rng, -3.0, 3.0);
             double curvature = k % 2 == 0 ? 0.0 : uniform(&rng, -1.5, 1.5);
             double length = uniform(&rng, 0.01, 1.0);
-            aisle_vec2 at = random_point(&rng, 0.5, 11.5, 0.5, 8.5);
+            aisle_vec2 at = uniform_point(&rng, aisle_vec2_of(0.5, 0.5), aisle_vec2_of(11.5, 8.5));
             aisle_waypoint_msg a = {.x = at.x, .y = at.y, .theta = theta};
             double half = 0.5 * curvature * length;
             double chord = fabs(half) > 1e-9 ? length * sin(half) / half : length;
@@ -202,7 +190,7 @@ static void test_clearance_about_follows_the_field_within_a_cell(void) {
     random_hall(&rng);
     open_space(AISLE_SPACE_FREE_TURN);
     for (int k = 0; k < 2000; k++) {
-        aisle_vec2 p = random_point(&rng, 0.3, 11.7, 0.3, 8.7);
+        aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(0.3, 0.3), aisle_vec2_of(11.7, 8.7));
         double truth = (double)hall_disc_gap(p.x, p.y, hall_vehicle.inner_radius);
         double told = aisle_space_clearance_about(&space, p);
         if (aisle_space_is_far(&space, p)) {

@@ -2,8 +2,6 @@
 
 #include "hall.h"
 
-#include "base/rng.h"
-
 static aisle_space space;
 static aisle_swarm swarm;
 static aisle_objective objective;
@@ -58,17 +56,6 @@ static aisle_status run(const aisle_vec2 *points, uint32_t count, uint32_t slice
 
 static double best_value(void) {
     return (double)swarm.pso.best_cost.value;
-}
-
-static double uniform(aisle_rng *rng, double lo, double hi) {
-    return lo + (hi - lo) * (double)aisle_rng_float(rng);
-}
-
-// x before y: the order in which a call's arguments are computed is the compiler's.
-static aisle_vec2 uniform_point(aisle_rng *rng, aisle_vec2 lo, aisle_vec2 hi) {
-    double x = uniform(rng, lo.x, hi.x);
-    double y = uniform(rng, lo.y, hi.y);
-    return aisle_vec2_of(x, y);
 }
 
 static aisle_vec2 random_place(aisle_rng *rng) {

@@ -2,7 +2,6 @@
 
 #include "hall.h"
 
-#include "base/rng.h"
 #include "plan/cost.h"
 #include "plan/seed.h"
 
@@ -14,17 +13,6 @@ static aisle_taut taut;
 static aisle_objective objective;
 static aisle_vec2 points[CAPACITY];
 static uint32_t spent;
-
-static double uniform(aisle_rng *rng, double lo, double hi) {
-    return lo + (hi - lo) * (double)aisle_rng_float(rng);
-}
-
-// x before y: the order in which a call's arguments are computed is the compiler's.
-static aisle_vec2 uniform_point(aisle_rng *rng, aisle_vec2 lo, aisle_vec2 hi) {
-    double x = uniform(rng, lo.x, hi.x);
-    double y = uniform(rng, lo.y, hi.y);
-    return aisle_vec2_of(x, y);
-}
 
 static void random_hall(aisle_rng *rng) {
     hall_begin(12.0, 9.0);
