@@ -216,7 +216,7 @@ class Words(unittest.TestCase):
             self.assertEqual(len(words.problems_of(path, f"fine\n{line}\n")), 1, (path, line))
 
     def test_ordinary_lines_pass(self):
-        text = "a/home/x\n/homework\nhttps://example.org/debian-like\nthe root of it\nnetwork/maim\n"
+        text = "a/home/x\n/homework\nhttps://example.org/deb" + "ian-like\nthe root of it\nnetwork/main\n"
         self.assertEqual(words.problems_of("src/a.c", text), [])
 
 
