@@ -4,7 +4,8 @@
 // with arcs); a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are cut to
 // AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and zones
 // follow the place; straight neighbours of the same speed class are joined again. Clearance: space.h's lower bound.
-// Speeds: profile.h. Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
+// Speeds: profile.h.
+// Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
 #ifndef AISLE_PLAN_COMPOSE_H
 #define AISLE_PLAN_COMPOSE_H
 

@@ -4,8 +4,9 @@
 // it sweeps can be driven with any turns. ALONG: the exact footprint with its heading along the motion; used where the
 // disc does not fit. Everything keeps margin + AISLE_SPACE_SLACK from obstacles; the slack is what the verifier needs
 // for its sagittas. Order of tests: bounds from the distance field first, the exact gap only where they leave a doubt
-// (near contours). The verifier shares none of this. Memory: one bit a cell. Time: O(1) from the field; O(obstacles
-// near) for an exact test. Every test adds its work units to *units.
+// (near contours). The verifier shares none of this.
+// Memory: one bit a cell. Time: O(1) from the field; O(obstacles near) for an exact test. Every test adds its work
+// units to *units.
 #ifndef AISLE_PLAN_SPACE_H
 #define AISLE_PLAN_SPACE_H
 

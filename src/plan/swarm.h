@@ -7,7 +7,8 @@
 // violation = metres of path whose clearance is short of the margin, by how much (sum of shortfall * ds), plus
 // curvature above curvature_max; value = integral of the objective's density at clearance and curvature. Where the
 // field leaves the margin in doubt the exact gap decides. The first particle is the seed itself; the verifier still
-// judges the end. Memory: work floats from the arena. Time: evaluations * samples; one unit per
+// judges the end.
+// Memory: work floats from the arena. Time: evaluations * samples; one unit per
 // AISLE_SWARM_SAMPLES_PER_UNIT samples and per exact gap.
 #ifndef AISLE_PLAN_SWARM_H
 #define AISLE_PLAN_SWARM_H

@@ -7,8 +7,8 @@
 // - R phi with T the tangent length), so that points already on one arc are not split for nothing. For pure length the
 // slides go as far as they may (halving down to 0.5 mm): a point that cannot move has both legs touching the same round
 // obstacle, which is the local optimum there. For other densities slides by 1/2, 1/4, 1/8 of the leg. Ends when a whole
-// pass gains less than AISLE_TAUT_GAIN of the cost, or after AISLE_TAUT_PASSES. Memory: the caller's points. Time: a
-// pass is O(points * sweeps); sliced by point.
+// pass gains less than AISLE_TAUT_GAIN of the cost, or after AISLE_TAUT_PASSES.
+// Memory: the caller's points. Time: a pass is O(points * sweeps); sliced by point.
 #ifndef AISLE_PLAN_TAUT_H
 #define AISLE_PLAN_TAUT_H
 

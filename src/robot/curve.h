@@ -7,7 +7,8 @@
 // papers' corner zones, PAPERS 4). Arcs keep what the legs keep: if both legs keep a distance D from a convex corner
 // inside, an arc with R <= D keeps it too. Biarcs: two arcs with a common tangent through (p0, t0) and (p1, t1); equal
 // tangent lengths (Bolton 1975). So a sampled spline becomes a curve with continuous heading that passes through every
-// sample. Memory: the caller's. Time: O(points).
+// sample.
+// Memory: the caller's. Time: O(points).
 #ifndef AISLE_ROBOT_CURVE_H
 #define AISLE_ROBOT_CURVE_H
 

@@ -1,6 +1,7 @@
 // vehicle.h - the vehicle's body and limits, checked and with every default filled in. Level 3.
 //
-// Units: m, s, rad, kg, W. Memory: the caller's struct, nothing else. Time: O(vertices). Objects share nothing.
+// Units: m, s, rad, kg, W.
+// Memory: the caller's struct, nothing else. Time: O(vertices). Objects share nothing.
 #ifndef AISLE_ROBOT_VEHICLE_H
 #define AISLE_ROBOT_VEHICLE_H
 
