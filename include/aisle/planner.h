@@ -137,7 +137,8 @@ aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *c
 // taken and answered by an event with its cause. O(message).
 aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const aisle_input *input);
 
-// Spends about `work_units` (never more than one indivisible piece above it, at most 4096 units).
+// Spends about `work_units`: at most one indivisible piece above it, below 4096 units where straight stretches of a path
+// stay below 100 m, in proportion to the longest one beyond.
 // AISLE_BUSY: more to do, or events wait to be pulled. AISLE_OK: idle until the next submit() or deadline.
 aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t work_units);
 

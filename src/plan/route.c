@@ -53,7 +53,6 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->first.ready = false;
     self->better.ready = false;
     self->stops = false;
-    self->swarm_done = false;
     self->announced = false;
     self->has_place = false;
     self->spent = 0;

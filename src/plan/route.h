@@ -82,7 +82,6 @@ typedef struct aisle_route {
     aisle_proof *trial;        // where the path being verified goes
     aisle_route_stage stage;
     bool stops;                          // build with a stop in every corner
-    bool swarm_done;                     // the legs' swarms have run
     bool announced;                      // AISLE_PARTIAL was told
     uint32_t spent, budget, proof_units; // work units; what the first build and proof took
     uint32_t budget_default;

@@ -82,7 +82,11 @@ static aisle_pso_cost cost(void *ctx, const float *x) {
         return (aisle_pso_cost){INFINITY, INFINITY};
     }
     aisle_spline_resample(self->spline, self->samples, self->sample);
-    return score(self);
+    aisle_pso_cost scored = score(self);
+    if (self->pso.evals == 0U) { // the first particle stands at the seed
+        self->seed_cost = scored;
+    }
+    return scored;
 }
 
 static double polyline_length(const aisle_vec2 *points, uint32_t count) {
@@ -152,7 +156,6 @@ aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, cons
     self->units = 0;
     place_vias(self, points, count, length);
     configure(self, options, length);
-    self->seed_cost = cost(self, self->guess);
     aisle_status st = aisle_pso_start(&self->pso, &self->config, self->work,
                                       AISLE_PSO_WORK_LEN(2U * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES));
     AISLE_ASSERT(st == AISLE_OK);

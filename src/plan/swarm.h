@@ -40,7 +40,7 @@ typedef struct aisle_swarm {
     float *work; // [AISLE_PSO_WORK_LEN(2 * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES)]
     aisle_spline *spline;
     aisle_spline_sample *sample; // [AISLE_SWARM_SAMPLES_MAX]
-    aisle_pso_cost seed_cost;    // of the first particle
+    aisle_pso_cost seed_cost;    // of the first particle, once it was scored: a counter for tests and tables
     uint32_t units;
 } aisle_swarm;
 

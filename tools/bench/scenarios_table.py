@@ -11,9 +11,11 @@ import json
 import sys
 
 import offline
+from aisle import path_t
 from aisle_tools import query, vehicle
 from aisle_tools.scenario import Scenario, read_scenario
 
+RISK_WEIGHT = 8.0  # as in src/plan/objective.h
 TARGET_MEDIAN, TARGET_WORST = 1.02, 1.05  # of disc robots, shortest, margin none
 
 
@@ -27,14 +29,14 @@ def main() -> int:
     print(f"margin {max(args.margin, 0.0):g} m, {args.objective}, {args.interpolation}")
     print(
         f"{'scenario':<16} {'robot':>10} {'legs':>5} {'length':>9} {'optimum':>9} {'ratio':>7} {'worst leg':>9} "
-        f"{'ms':>8} {'units':>9}  faults"
+        f"{'cost':>9} {'ms':>8} {'units':>9}  faults"
     )
     rows = []
     for name, optimum in sorted(optima.items()):
         if args.only and name not in args.only:
             continue
         scenario = read_scenario(args.folder / f"{name}.json", args.margin)
-        rows.append(print_row(name, scenario, optimum, scenario_answers(args, scenario)))
+        rows.append(print_row(name, args.objective, scenario, optimum, scenario_answers(args, scenario)))
     discs = [r for r in rows if r["disc"] and r["solved"] == r["legs"]]
     ratios = [leg for r in discs for leg in r["leg_ratios"]]
     if ratios:
@@ -58,7 +60,16 @@ def scenario_answers(args: argparse.Namespace, scenario: Scenario) -> list[offli
     return offline.answers(args, scenario.world, vehicle.make({**shape, "margin": args.margin}), legs)
 
 
-def print_row(name: str, scenario: Scenario, optimum: dict, answers: list[offline.Answer]) -> dict:
+def cost(objective: str, reply: path_t) -> float:
+    """What the objective makes of the whole path: m, m weighed with the default risk weight, s, J."""
+    if objective == "safest":
+        return reply.length * (1.0 + RISK_WEIGHT * reply.risk)
+    return {"fastest": reply.duration, "least_energy": reply.energy}.get(objective, reply.length)
+
+
+def print_row(
+    name: str, objective: str, scenario: Scenario, optimum: dict, answers: list[offline.Answer]
+) -> dict:
     # A footprint cannot be shorter than the disc inside it: its ratio is to that bound.
     legs = optimum.get("inner", optimum)["legs"]
     solved = [(a, leg) for a, leg in zip(answers, legs) if a.is_path]
@@ -71,6 +82,7 @@ def print_row(name: str, scenario: Scenario, optimum: dict, answers: list[offlin
         "length": length,
         "optimum": best,
         "leg_ratios": [a.reply.length / leg["lower"] for a, leg in solved],
+        "cost": sum(cost(objective, a.reply) for a, _ in solved),
         "ms": [a.ms for a in answers],
         "work_units": [a.reply.work_units for a in answers],
         "faults": [f"{i + 1}: {offline.why(a)}" for i, a in enumerate(answers) if offline.why(a)],
@@ -79,7 +91,7 @@ def print_row(name: str, scenario: Scenario, optimum: dict, answers: list[offlin
     ratio = f"{length / best:>7.4f} {max(row['leg_ratios']):>9.4f}" if solved else f"{'-':>7} {'-':>9}"
     print(
         f"{name:<16} {robot:>10} {len(solved)}/{len(legs):<3} {length:>9.3f} {best:>9.3f} {ratio} "
-        f"{sum(row['ms']):>8.1f} {sum(row['work_units']):>9}  {' | '.join(row['faults'])}",
+        f"{row['cost']:>9.3f} {sum(row['ms']):>8.1f} {sum(row['work_units']):>9}  {' | '.join(row['faults'])}",
         flush=True,
     )
     return row
