@@ -68,19 +68,23 @@ static void lay_spline(aisle_compose *self, aisle_curve *curve, const aisle_leg 
     }
 }
 
-static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
+static void lay_way(aisle_compose *self, aisle_curve *curve, const aisle_leg *leg) {
     const aisle_compose_request *request = &self->request;
-    const aisle_leg *leg = &request->legs[i];
-    const aisle_goal_msg *goal = &request->goals[i];
     aisle_corner_rule rule = corner_rule(self);
-    if (leg->count < 2U) { // the goal is where the leg begins
-        // only the heading may be left to do
-    } else if (!leg->use_swarm) {
+    if (!leg->use_swarm) {
         aisle_curve_polyline(curve, request->points + leg->first, leg->count, &rule);
     } else if (request->options->interpolation == AISLE_OPTIONS_LINEAR) {
         aisle_curve_polyline(curve, leg->via, leg->via_count, &rule);
     } else {
         lay_spline(self, curve, leg);
+    }
+}
+
+static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
+    const aisle_leg *leg = &self->request.legs[i];
+    const aisle_goal_msg *goal = &self->request.goals[i];
+    if (leg->count >= 2U) { // else the goal is where the leg begins: only the heading may be left to do
+        lay_way(self, curve, leg);
     }
     double tolerance = goal->tolerance_theta > 0.0F ? (double)goal->tolerance_theta : 0.05;
     if (!aisle_goal_heading_is_free(goal) &&

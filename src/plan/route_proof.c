@@ -2,7 +2,7 @@
 
 #include "base/check.h"
 
-#define RESERVE 3U // proofs' worth of work units kept back when the swarm starts
+#define RESERVE_QUARTERS 3U // of all that the first proof took: kept back for building and proving the swarm's path
 
 // ---- BUILD, VERIFY
 
@@ -224,7 +224,7 @@ aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
 
 // What the swarm may still spend.
 static uint32_t left_for_swarm(const aisle_route *self) {
-    uint64_t kept = (uint64_t)self->spent + (uint64_t)RESERVE * self->proof_units / 4U;
+    uint64_t kept = (uint64_t)self->spent + (uint64_t)RESERVE_QUARTERS * self->proof_units / 4U;
     return kept < self->budget ? self->budget - (uint32_t)kept : 0U;
 }
 
