@@ -49,14 +49,14 @@ void aisle_heap_carve(aisle_heap *self, aisle_arena *arena, uint32_t capacity) {
     self->key = aisle_arena_take(arena, capacity, sizeof *self->key);
     self->slot = aisle_arena_take(arena, capacity, sizeof *self->slot);
     self->order = aisle_arena_take(arena, capacity, sizeof *self->order);
-    if (self->order != NULL) {
-        aisle_heap_clear(self);
+    for (uint32_t item = 0; self->order != NULL && item < capacity; item++) {
+        self->slot[item] = AISLE_HEAP_NONE;
     }
 }
 
 void aisle_heap_clear(aisle_heap *self) {
-    for (uint32_t item = 0; item < self->capacity; item++) {
-        self->slot[item] = AISLE_HEAP_NONE;
+    for (uint32_t at = 0; at < self->count; at++) {
+        self->slot[self->order[at]] = AISLE_HEAP_NONE;
     }
     self->count = 0;
 }

@@ -26,7 +26,7 @@ typedef struct aisle_heap {
 // capacity <= AISLE_HEAP_CAPACITY_MAX. Usable unless arena->overflow or measuring.
 void aisle_heap_carve(aisle_heap *self, aisle_arena *arena, uint32_t capacity);
 
-// Empties it; count_max stays. O(capacity).
+// Empties it; count_max stays. O(items in it).
 void aisle_heap_clear(aisle_heap *self);
 
 // Adds an item, or lowers the key of one that is in; a key not below the present one changes nothing.

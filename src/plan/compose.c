@@ -28,7 +28,7 @@ static bool arc_free(void *ctx, const aisle_waypoint_msg *from, const aisle_wayp
            space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
 }
 
-static aisle_corner_rule corner_rule(aisle_compose *self) {
+static aisle_corner_rule corner_rule(aisle_compose *self, bool is_tangent) {
     const aisle_vehicle *vehicle = self->request.space->vehicle;
     double zone = (double)self->request.options->zone;
     double sure = vehicle->outer_radius + vehicle->margin;
@@ -38,6 +38,10 @@ static aisle_corner_rule corner_rule(aisle_compose *self) {
                               .zone = zone,
                               .arc_free = arc_free,
                               .ctx = self};
+    if (is_tangent) { // proved free by the search, exactly
+        rule.max_radius = rule.sure_radius = self->request.space->keep + vehicle->outer_radius;
+        rule.arc_free = NULL;
+    }
     if (vehicle->curvature_max > 0.0) {
         rule.min_radius = 1.0 / vehicle->curvature_max;
         rule.max_radius = aisle_max(rule.max_radius, rule.min_radius);
@@ -70,7 +74,7 @@ static void lay_spline(aisle_compose *self, aisle_curve *curve, const aisle_leg 
 
 static void lay_way(aisle_compose *self, aisle_curve *curve, const aisle_leg *leg) {
     const aisle_compose_request *request = &self->request;
-    aisle_corner_rule rule = corner_rule(self);
+    aisle_corner_rule rule = corner_rule(self, leg->is_tangent && !leg->use_swarm);
     if (!leg->use_swarm) {
         aisle_curve_polyline(curve, request->points + leg->first, leg->count, &rule);
     } else if (request->options->interpolation == AISLE_OPTIONS_LINEAR) {

@@ -2,9 +2,19 @@
 
 #include "plan/route_stages.h"
 
+// No leg is searched both ways at a time: the tangent search's nodes lie where the grid search's cells do.
+static void carve_searches(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+    aisle_tangent_carve(&self->tangent, arena, limits);
+    aisle_arena nodes = *arena;
+    aisle_tangent_carve_nodes(&self->tangent, &nodes);
+    aisle_seed_carve(&self->seed, arena, limits);
+    arena->overflow = arena->overflow || nodes.overflow;
+    arena->used = arena->used > nodes.used ? arena->used : nodes.used;
+}
+
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_space_carve(&self->space, arena, limits->cells);
-    aisle_seed_carve(&self->seed, arena, limits);
+    carve_searches(self, arena, limits);
     aisle_swarm_carve(&self->swarm, arena);
     aisle_compose_carve(&self->compose, arena);
     self->points = (aisle_vec2 *)aisle_arena_take(arena, AISLE_ROUTE_POINTS, sizeof(aisle_vec2));
@@ -56,6 +66,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->announced = false;
     self->has_place = false;
     self->spent = 0;
+    self->tangent_units = 0;
     self->proof_units = 0;
     self->swarm_evals = self->nodes = self->verify_failed = self->intervals = 0;
     self->collide = (aisle_collide_count){0};
@@ -70,6 +81,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
     switch (self->stage) {
     case AISLE_ROUTE_CHECK:
         return aisle_route_check(self);
+    case AISLE_ROUTE_TANGENT:
+        return aisle_route_step_tangent(self, units);
     case AISLE_ROUTE_SEED:
         return aisle_route_step_seed(self, units);
     case AISLE_ROUTE_TAUT:

@@ -21,6 +21,7 @@
 #include "plan/leg.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
+#include "plan/tangent.h"
 #include "plan/taut.h"
 #include "plan/verify.h"
 #include "plan/why.h"
@@ -51,6 +52,7 @@ typedef struct aisle_proof { // an encoded path and what it is worth
 typedef enum aisle_route_stage {
     AISLE_ROUTE_IDLE,
     AISLE_ROUTE_CHECK,
+    AISLE_ROUTE_TANGENT,
     AISLE_ROUTE_SEED,
     AISLE_ROUTE_TAUT,
     AISLE_ROUTE_BUILD,
@@ -60,12 +62,20 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_END
 } aisle_route_stage;
 
+typedef enum aisle_route_tangent_aim {
+    AISLE_ROUTE_BOUND, // for the disc inside the footprint: no way is shorter
+    AISLE_ROUTE_WAY    // for the disc in which the footprint turns: the way itself
+} aisle_route_tangent_aim;
+
 typedef struct aisle_route {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
     aisle_request request;
     aisle_objective objective;
     aisle_space space;
+    aisle_tangent tangent;
+    aisle_route_tangent_aim tangent_aim;
+    uint32_t tangent_units; // spent there
     aisle_seed seed;
     aisle_taut taut;
     aisle_swarm swarm;

@@ -13,11 +13,10 @@ void aisle_route_begin_build(aisle_route *self, aisle_proof *trial) {
     self->compose.path = NULL; // not begun
 }
 
-static double beeline(const aisle_route *self) {
+static double length_bound(const aisle_route *self) {
     double sum = 0.0;
     for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
-        sum += aisle_vec2_distance(aisle_route_place(aisle_route_leg_start(self, i)),
-                                   aisle_route_place(&self->request.goals[i]));
+        sum += self->legs[i].bound;
     }
     return sum;
 }
@@ -27,7 +26,7 @@ static void seal(aisle_route *self) {
     bool swarm = self->trial == &self->better;
     path->planner = swarm ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
     path->work_units = (int32_t)self->spent;
-    float bound = (float)(beeline(self) * (1.0 - 1e-6));
+    float bound = (float)(length_bound(self) * (1.0 - 1e-6));
     path->length_bound = bound < path->length ? bound : path->length;
     path->certificate = (int32_t)aisle_path_certificate(path);
     aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, path, self->trial->bytes, AISLE_ROUTE_BYTES, &self->trial->size);

@@ -50,7 +50,7 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     return AISLE_BUSY;
 }
 
-static void begin_leg(aisle_route *self, uint32_t attempt);
+static void begin_leg(aisle_route *self);
 
 aisle_status aisle_route_check(aisle_route *self) {
     const aisle_request *request = &self->request;
@@ -65,7 +65,7 @@ aisle_status aisle_route_check(aisle_route *self) {
         st = check_stop(self, &request->goals[i], false);
     }
     if (st == AISLE_BUSY) {
-        begin_leg(self, 0);
+        begin_leg(self);
     }
     return st;
 }
@@ -106,19 +106,10 @@ static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mo
     return aisle_vehicle_is_disc(self->vehicle) ? attempts[n].for_discs : attempts[n].for_bodies;
 }
 
-// Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
-static void begin_leg(aisle_route *self, uint32_t n) {
+// The first attempt from n on that finds its ends; none does: WHY.
+void aisle_route_begin_seed(aisle_route *self, uint32_t n) {
     aisle_leg *leg = &self->legs[self->leg];
-    *leg = (aisle_leg){.first = self->point_count, .attempt = n, .seed_value = -1.0, .swarm_value = -1.0};
-    aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
-    aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
     self->stage = AISLE_ROUTE_SEED;
-    if (aisle_vec2_distance(from, to) < 1e-6) {
-        leg->count = 1;
-        self->points[self->point_count++] = from;
-        self->seed.phase = AISLE_SEED_DONE;
-        return;
-    }
     // Before the dear attempts the proof is asked whether there can be a way at all.
     uint32_t end = n < ATTEMPTS_CHEAP ? ATTEMPTS_CHEAP : ATTEMPTS;
     for (; n < end; n++) {
@@ -128,7 +119,9 @@ static void begin_leg(aisle_route *self, uint32_t n) {
             continue;
         }
         aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
-        if (aisle_seed_start(&self->seed, &self->space, &self->objective, stride, from, to,
+        if (aisle_seed_start(&self->seed, &self->space, &self->objective, stride,
+                             aisle_route_place(aisle_route_leg_start(self, self->leg)),
+                             aisle_route_place(&self->request.goals[self->leg]),
                              self->points + leg->first) == AISLE_OK) {
             return;
         }
@@ -136,10 +129,28 @@ static void begin_leg(aisle_route *self, uint32_t n) {
     begin_why(self);
 }
 
-static void next_leg(aisle_route *self) {
+static void begin_leg(aisle_route *self) {
+    aisle_leg *leg = &self->legs[self->leg];
+    aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
+    aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
+    *leg = (aisle_leg){
+        .first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0, .bound = aisle_vec2_distance(from, to)};
+    if (leg->bound < 1e-6) { // there already
+        self->stage = AISLE_ROUTE_SEED;
+        leg->count = 1;
+        self->points[self->point_count++] = from;
+        self->seed.phase = AISLE_SEED_DONE;
+    } else if (AISLE_ROUTE_POINTS - self->point_count < AISLE_SEED_POINTS_MAX || aisle_layout_has_scan(self->layout)) {
+        aisle_route_begin_seed(self, 0);
+    } else {
+        aisle_route_begin_tangent(self);
+    }
+}
+
+void aisle_route_next_leg(aisle_route *self) {
     self->leg++;
     if (self->leg < (uint32_t)self->request.num_goals) {
-        begin_leg(self, 0);
+        begin_leg(self);
     } else {
         aisle_route_begin_build(self, &self->first);
     }
@@ -148,7 +159,7 @@ static void next_leg(aisle_route *self) {
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
     aisle_leg *leg = &self->legs[self->leg];
     if (self->seed.phase == AISLE_SEED_DONE) { // start = goal
-        next_leg(self);
+        aisle_route_next_leg(self);
         return AISLE_BUSY;
     }
     if (AISLE_ROUTE_POINTS - self->point_count < AISLE_SEED_POINTS_MAX) {
@@ -164,7 +175,7 @@ aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
         if (leg->attempt + 1U == ATTEMPTS_CHEAP) {
             begin_why(self); // it goes on with the other attempts if there can be a way
         } else {
-            begin_leg(self, leg->attempt + 1U);
+            aisle_route_begin_seed(self, leg->attempt + 1U);
         }
     } else if (st == AISLE_OK) {
         double arc = self->vehicle->outer_radius + self->vehicle->margin;
@@ -179,7 +190,7 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units) {
     if (aisle_taut_step(&self->taut, units, &self->spent) == AISLE_OK) {
         self->legs[self->leg].count = self->taut.count;
         self->point_count += self->taut.count;
-        next_leg(self);
+        aisle_route_next_leg(self);
     }
     return AISLE_BUSY;
 }
@@ -190,7 +201,7 @@ aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
     aisle_status st = aisle_why_step(&self->why, units, &self->spent);
     const aisle_why *why = &self->why;
     if (st == AISLE_PARTIAL && !why->proved && self->legs[self->leg].attempt < ATTEMPTS_CHEAP) {
-        begin_leg(self, ATTEMPTS_CHEAP);
+        aisle_route_begin_seed(self, ATTEMPTS_CHEAP);
         return AISLE_BUSY;
     }
     if (st == AISLE_BUSY || st == AISLE_PARTIAL) {

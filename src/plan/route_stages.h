@@ -32,6 +32,14 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
     return aisle_route_refuse(self, cause, id, value);
 }
 
+// Begin the seed of the leg under way with the n-th attempt; go on to the next leg or to BUILD.
+void aisle_route_begin_seed(aisle_route *self, uint32_t n);
+void aisle_route_next_leg(aisle_route *self);
+
+// route_tangent.c
+void aisle_route_begin_tangent(aisle_route *self);
+aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units);
+
 // route_seed.c
 aisle_status aisle_route_check(aisle_route *self);
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units);

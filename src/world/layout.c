@@ -23,6 +23,7 @@ void aisle_layout_carve(aisle_layout *self, aisle_arena *arena, const aisle_limi
     AISLE_ASSERT(PATCH_IDS <= AISLE_LAYOUT_MAX_POLYGONS); // one map does for either message
     aisle_id_map_carve(&staging->message, arena, AISLE_LAYOUT_MAX_POLYGONS);
     aisle_layout_index_carve(&self->index, arena, zones);
+    aisle_layout_index_carve(&self->wide, arena, zones);
     aisle_grid_carve(&self->grid, arena, cells);
 }
 
@@ -44,6 +45,10 @@ const aisle_grid *aisle_layout_grid(const aisle_layout *self) {
     return &self->grid;
 }
 
+const aisle_layout_index *aisle_layout_wide(const aisle_layout *self) {
+    return &self->wide;
+}
+
 aisle_aabb aisle_layout_bounds(const aisle_layout *self) {
     const aisle_layout_store *store = aisle_layout_held(self);
     aisle_aabb area = store->header.bounds;
@@ -58,6 +63,10 @@ aisle_aabb aisle_layout_bounds(const aisle_layout *self) {
 
 uint32_t aisle_layout_zone_count(const aisle_layout *self) {
     return aisle_layout_held(self)->zone_count;
+}
+
+uint32_t aisle_layout_vertex_count(const aisle_layout *self) {
+    return aisle_layout_held(self)->vertex_count;
 }
 
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index) {

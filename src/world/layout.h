@@ -11,7 +11,8 @@
 // grid.h hold all the same); cells the bounds cut are occupied.
 // A resolution is a float on the wire; one that is the float nearest to a whole number of micrometres is read as that
 // (0.05F as 0.05).
-// Bucket index: square buckets, CSR lists of polygon indices, side doubled until the lists fit.
+// Bucket index: square buckets, CSR lists of polygon indices, side doubled until the lists fit. Two of them: a narrow
+// one (from AISLE_LAYOUT_BUCKET on) for what is near, a wide one (about one polygon a bucket) for what is seen from afar.
 //
 // Revisions rise strictly for one map_id; another map_id is another map and may have any. A part of a newer revision,
 // or of another map, ends the staging of an older one. Order of zones: as in the parts in order, whatever the order
@@ -42,6 +43,8 @@
 #define AISLE_LAYOUT_RESOLUTION_MIN 0.005    // m, of those that are given
 #define AISLE_LAYOUT_RESOLUTION_MAX 1.0      // m
 #define AISLE_LAYOUT_TILES_MAX 4096U         // of one revision
+#define AISLE_LAYOUT_BUCKET 0.5              // m, least side of the narrow index's buckets
+#define AISLE_LAYOUT_BUCKET_WIDE 1.0         // m, and of the wide one's
 #define AISLE_LAYOUT_ID_SCAN (-1)            // "obstacle id" of a scanned cell
 #define AISLE_LAYOUT_ID_BOUNDS (-2)          // and of the outside
 
@@ -95,6 +98,7 @@ typedef struct aisle_layout {
     uint32_t next; // build progress in the phase
     aisle_layout_staging staging;
     aisle_layout_index index; // of the active store
+    aisle_layout_index wide;  // the same in wide buckets
     aisle_grid grid;          // of the active store
 } aisle_layout;
 
@@ -128,8 +132,10 @@ aisle_status aisle_layout_build(aisle_layout *self, uint32_t units);
 const aisle_grid *aisle_layout_grid(const aisle_layout *self);
 aisle_aabb aisle_layout_bounds(const aisle_layout *self); // with a scan: what they have in common with its extent
 uint32_t aisle_layout_zone_count(const aisle_layout *self);
+uint32_t aisle_layout_vertex_count(const aisle_layout *self); // zone->first + i is below it
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index);
 aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone *zone);
+const aisle_layout_index *aisle_layout_wide(const aisle_layout *self);
 static inline bool aisle_zone_is_obstacle(const aisle_zone *zone) {
     return zone->kind == AISLE_POLYGON_OBSTACLE || zone->kind == AISLE_POLYGON_KEEPOUT;
 }

@@ -51,6 +51,14 @@ static void mark_border(aisle_layout *self) {
     }
 }
 
+static void build_indices(aisle_layout *self) {
+    const aisle_layout_store *store = aisle_layout_active(self);
+    const aisle_vec2 size = aisle_vec2_sub(store->header.bounds.hi, store->header.bounds.lo);
+    const double share = sqrt(size.x * size.y / (double)(store->zone_count + 1U));
+    aisle_layout_index_build(&self->index, store, AISLE_LAYOUT_BUCKET);
+    aisle_layout_index_build(&self->wide, store, aisle_max(share, AISLE_LAYOUT_BUCKET_WIDE));
+}
+
 // Items of one unit each in a phase.
 static uint32_t phase_items(const aisle_layout *self) {
     switch (self->phase) {
@@ -67,7 +75,7 @@ static void do_item(aisle_layout *self) {
     aisle_status status = AISLE_OK;
     switch (self->phase) {
     case PHASE_INDEX:
-        aisle_layout_index_build(&self->index, aisle_layout_active(self));
+        build_indices(self);
         break;
     case PHASE_CLEAR:
         status = aisle_grid_begin(&self->grid, &aisle_layout_active(self)->lattice);

@@ -37,10 +37,10 @@ static bool do_lists_fit(const aisle_layout_index *self, const aisle_layout_stor
 }
 
 // Ends: a single bucket lists every zone once.
-static void choose_side(aisle_layout_index *self, const aisle_layout_store *store) {
+static void choose_side(aisle_layout_index *self, const aisle_layout_store *store, double side) {
     const aisle_aabb bounds = store->header.bounds;
     self->lo = bounds.lo;
-    self->side = AISLE_INDEX_SIDE_MIN;
+    self->side = side;
     for (;;) {
         self->nx = (uint32_t)((bounds.hi.x - bounds.lo.x) / self->side) + 1U;
         self->ny = (uint32_t)((bounds.hi.y - bounds.lo.y) / self->side) + 1U;
@@ -69,9 +69,9 @@ static void list_zone(aisle_layout_index *self, aisle_bucket_range r, uint16_t z
     }
 }
 
-void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_store *store) {
+void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_store *store, double side) {
     AISLE_ASSERT(self->entry_capacity >= store->zone_count);
-    choose_side(self, store);
+    choose_side(self, store, side);
     const uint32_t buckets = self->nx * self->ny;
     memset(self->starts, 0, (buckets + 1U) * sizeof *self->starts);
     for (uint32_t i = 0; i < store->zone_count; i++) {

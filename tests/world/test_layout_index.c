@@ -1,5 +1,7 @@
 #include "layout_fixture.h"
 
+#define SIDE 0.5 // m
+
 static fix_scene scene;
 static aisle_layout_store store;
 static aisle_layout_index bucket_index;
@@ -18,7 +20,7 @@ static void build(uint32_t count, double width, double height) {
         aisle_layout_store_add(&store, &scene.polygons[i]);
     }
     store.header.bounds = (aisle_aabb){{0, 0}, {width, height}};
-    aisle_layout_index_build(&bucket_index, &store);
+    aisle_layout_index_build(&bucket_index, &store, SIDE);
 }
 
 // Every zone is listed, once and in rising order, in exactly the buckets its box reaches into.
@@ -44,7 +46,7 @@ static void test_lists_hold_what_reaches_into_their_bucket(void) {
     aisle_rng rng = aisle_rng_seed(151);
     fix_random_scene(&scene, &rng, 200, 1);
     build(200, 10.0, 8.0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, AISLE_INDEX_SIDE_MIN, bucket_index.side);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, SIDE, bucket_index.side);
     TEST_ASSERT_EQUAL_UINT32(21, bucket_index.nx);
     TEST_ASSERT_EQUAL_UINT32(17, bucket_index.ny);
     expect_sound();
@@ -54,7 +56,7 @@ static void test_the_side_is_doubled_until_buckets_fit(void) {
     aisle_rng rng = aisle_rng_seed(152);
     fix_random_scene(&scene, &rng, 20, 1);
     build(20, 2e5, 2e5);
-    TEST_ASSERT_TRUE(bucket_index.side > AISLE_INDEX_SIDE_MIN);
+    TEST_ASSERT_TRUE(bucket_index.side > SIDE);
     TEST_ASSERT_TRUE(4U * bucket_index.nx * bucket_index.ny > bucket_index.bucket_capacity / 2U); // no more than needed
     expect_sound();
 }
