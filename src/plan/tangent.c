@@ -28,21 +28,6 @@ void aisle_tangent_carve_nodes(aisle_tangent *self, aisle_arena *arena) {
 
 // ---- geometry
 
-bool aisle_tangent_between(aisle_circle from, aisle_circle to, aisle_tangent_line *line) {
-    aisle_vec2 way = aisle_vec2_sub(to.centre, from.centre);
-    double k = from.rho - to.rho;
-    double square = aisle_vec2_dot(way, way);
-    double rest = square - k * k;
-    if (square < 1e-18 || rest < 0.0) {
-        return false;
-    }
-    line->length = sqrt(rest);
-    double along = line->length / square; // square >= 1e-18
-    double aside = k / square;
-    line->d = aisle_vec2_of(along * way.x - aside * way.y, along * way.y + aside * way.x);
-    return true;
-}
-
 double aisle_arc_length(aisle_circle about, aisle_vec2 from, aisle_vec2 to) {
     double sine = aisle_vec2_cross(from, to);
     double side = about.rho >= 0.0 ? 1.0 : -1.0;

@@ -15,12 +15,13 @@ typedef struct view { // from the node under way
     aisle_vec2 first, last;
     aisle_vec2 first_at, last_at; // contacts of the two
     uint32_t stamp;
+    uint32_t open_bin; // not hidden when last looked at
     aisle_status st;
 } view;
 
 // Bin of a direction: monotone in its angle, from x to the left.
 static uint32_t bin_of(aisle_vec2 d) {
-    double r = d.y / (fabs(d.x) + fabs(d.y)); // unit length: the sum is at least 1
+    double r = d.y / (fabs(d.x) + fabs(d.y)); // never (0, 0): a direction, of any length
     double quarter = d.x < 0.0 ? 2.0 - r : (d.y < 0.0 ? 4.0 + r : r);
     uint32_t bin = (uint32_t)(quarter * (double)(AISLE_TANGENT_BINS / 4U));
     return bin < AISLE_TANGENT_BINS ? bin : AISLE_TANGENT_BINS - 1U;
@@ -68,12 +69,16 @@ static void reset_depth(view *v) {
     }
 }
 
-static bool is_all_hidden(const view *v, double distance) {
-    float deepest = 0.0F;
+// Looks first where it found a direction open the last time.
+static bool is_all_hidden(view *v, double distance) {
     for (uint32_t i = 0; i < AISLE_TANGENT_BINS; i++) {
-        deepest = deepest > v->self->depth[i] ? deepest : v->self->depth[i];
+        uint32_t bin = (v->open_bin + i) % AISLE_TANGENT_BINS;
+        if ((double)v->self->depth[bin] >= distance) {
+            v->open_bin = bin;
+            return false;
+        }
     }
-    return (double)deepest < distance;
+    return true;
 }
 
 static void offer(view *v, const aisle_tangent_node *to, const aisle_tangent_line *line) {
@@ -86,10 +91,40 @@ static void offer(view *v, const aisle_tangent_node *to, const aisle_tangent_lin
     v->st = aisle_tangent_push(v->self, v->from, to, line->length);
 }
 
-// Does the obstacle's bounding circle lie beside all that lines of the view sweep?
-static bool is_aside(const view *v, aisle_vec2 centre, double radius) {
-    return !v->all_round && (v->side * aisle_vec2_cross(v->first, aisle_vec2_sub(centre, v->first_at)) < -radius ||
-                             v->side * aisle_vec2_cross(v->last, aisle_vec2_sub(centre, v->last_at)) > radius);
+typedef struct box { // of an obstacle
+    aisle_vec2 centre, half;
+} box;
+
+static double reach_along(const box *b, aisle_vec2 d) {
+    return b->half.x * fabs(d.x) + b->half.y * fabs(d.y);
+}
+
+// Does the box lie beside all that lines of the view sweep?
+static bool is_aside(const view *v, const box *b) {
+    const double radius = v->self->radius;
+    return !v->all_round && (v->side * aisle_vec2_cross(v->first, aisle_vec2_sub(b->centre, v->first_at)) <
+                                 -radius - reach_along(b, aisle_turned_left(v->first)) ||
+                             v->side * aisle_vec2_cross(v->last, aisle_vec2_sub(b->centre, v->last_at)) >
+                                 radius + reach_along(b, aisle_turned_left(v->last)));
+}
+
+// Is every direction to the box hidden nearer than the box begins? Lines begin and end up to a radius aside.
+static bool is_hidden(const view *v, const box *b) {
+    aisle_vec2 to = aisle_vec2_sub(b->centre, v->circle.centre);
+    double away = aisle_vec2_length(to);
+    aisle_vec2 d = away > 0.0 ? aisle_vec2_scale(to, 1.0 / away) : aisle_vec2_of(1.0, 0.0);
+    aisle_vec2 n = aisle_turned_left(d);
+    double near = away - reach_along(b, d) - 2.0 * v->self->radius;
+    double wide = reach_along(b, n) + 2.0 * v->self->radius;
+    if (near <= 0.0) {
+        return false;
+    }
+    uint32_t bin = bin_of(aisle_vec2_sub(aisle_vec2_scale(d, near), aisle_vec2_scale(n, wide)));
+    uint32_t last = bin_of(aisle_vec2_add(aisle_vec2_scale(d, near), aisle_vec2_scale(n, wide)));
+    while ((double)v->self->depth[bin] < near && bin != last) {
+        bin = (bin + 1U) % AISLE_TANGENT_BINS;
+    }
+    return (double)v->self->depth[bin] < near;
 }
 
 typedef struct sight { // of one obstacle
@@ -123,9 +158,9 @@ static void look_at_corner(view *v, const aisle_zone *zone, uint32_t index, cons
 
 static void look_at_zone(view *v, uint32_t index) {
     const aisle_zone *zone = aisle_layout_zone(v->self->layout, index);
-    double half_diagonal = 0.5 * aisle_vec2_distance(zone->box.lo, zone->box.hi);
-    if (!aisle_zone_is_obstacle(zone) ||
-        is_aside(v, aisle_vec2_lerp(zone->box.lo, zone->box.hi, 0.5), half_diagonal + v->self->radius)) {
+    const box around = {aisle_vec2_lerp(zone->box.lo, zone->box.hi, 0.5),
+                        aisle_vec2_scale(aisle_vec2_sub(zone->box.hi, zone->box.lo), 0.5)};
+    if (!aisle_zone_is_obstacle(zone) || is_aside(v, &around) || is_hidden(v, &around)) {
         return;
     }
     const aisle_convex shape = aisle_layout_zone_shape(v->self->layout, zone);
@@ -144,6 +179,12 @@ static void look_at_zone(view *v, uint32_t index) {
 static void look_at_bucket(view *v, uint32_t bx, uint32_t by) {
     const aisle_layout_index *wide = aisle_layout_wide(v->self->layout);
     uint32_t bucket = by * wide->nx + bx;
+    const box around = {aisle_vec2_of(wide->lo.x + (bx + 0.5) * wide->side, wide->lo.y + (by + 0.5) * wide->side),
+                        aisle_vec2_of(0.5 * wide->side, 0.5 * wide->side)};
+    bool is_rim = bx == 0U || by == 0U || bx + 1U == wide->nx || by + 1U == wide->ny; // lists what lies outside, too
+    if (!is_rim && is_aside(v, &around)) {
+        return;
+    }
     for (uint32_t at = wide->starts[bucket]; at < wide->starts[bucket + 1U]; at++) {
         uint32_t index = wide->entries[at];
         if (v->self->seen[index] != v->stamp) {
