@@ -61,6 +61,21 @@ void aisle_heap_clear(aisle_heap *self) {
     self->count = 0;
 }
 
+void aisle_heap_forget(aisle_heap *self) {
+    self->count = 0;
+}
+
+aisle_status aisle_heap_add(aisle_heap *self, uint32_t item, uint64_t key) {
+    if (item >= self->capacity) {
+        return AISLE_ERR_ARG;
+    }
+    AISLE_ASSERT(self->count < self->capacity);
+    self->key[item] = key;
+    sift_up(self, self->count++, item);
+    self->count_max = self->count > self->count_max ? self->count : self->count_max;
+    return AISLE_OK;
+}
+
 aisle_status aisle_heap_push(aisle_heap *self, uint32_t item, uint64_t key) {
     if (item >= self->capacity) {
         return AISLE_ERR_ARG;

@@ -33,6 +33,12 @@ void aisle_heap_clear(aisle_heap *self);
 // An item that was popped may come back with any key. AISLE_ERR_ARG: item >= capacity.
 aisle_status aisle_heap_push(aisle_heap *self, uint32_t item, uint64_t key);
 
+// The same for an item that is known not to be in, which push() looks up: the only one that may follow forget().
+aisle_status aisle_heap_add(aisle_heap *self, uint32_t item, uint64_t key);
+
+// Empties a heap whose arrays others have written to; what is in is then only what add() brought. O(1).
+void aisle_heap_forget(aisle_heap *self);
+
 // Removes and returns the item of least key; AISLE_HEAP_NONE when empty.
 uint32_t aisle_heap_pop(aisle_heap *self);
 

@@ -2,14 +2,13 @@
 
 #include "plan/route_stages.h"
 
-// No leg is searched both ways at a time: the tangent search's nodes lie where the grid search's cells do.
+// No leg is searched both ways at a time: the tangent search lies where the grid search does.
 static void carve_searches(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_tangent_carve(&self->tangent, arena, limits);
-    aisle_arena nodes = *arena;
-    aisle_tangent_carve_nodes(&self->tangent, &nodes);
+    aisle_arena shared = *arena;
+    aisle_tangent_carve(&self->tangent, &shared, limits);
     aisle_seed_carve(&self->seed, arena, limits);
-    arena->overflow = arena->overflow || nodes.overflow;
-    arena->used = arena->used > nodes.used ? arena->used : nodes.used;
+    arena->overflow = arena->overflow || shared.overflow;
+    arena->used = arena->used > shared.used ? arena->used : shared.used;
 }
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {

@@ -140,7 +140,8 @@ static void begin_leg(aisle_route *self) {
         leg->count = 1;
         self->points[self->point_count++] = from;
         self->seed.phase = AISLE_SEED_DONE;
-    } else if (AISLE_ROUTE_POINTS - self->point_count < AISLE_SEED_POINTS_MAX || aisle_layout_has_scan(self->layout)) {
+    } else if (AISLE_ROUTE_POINTS - self->point_count < AISLE_SEED_POINTS_MAX ||
+               !aisle_layout_has_blocks(self->layout)) {
         aisle_route_begin_seed(self, 0);
     } else {
         aisle_route_begin_tangent(self);

@@ -14,16 +14,14 @@ static uint32_t or_default(uint32_t value, uint32_t fallback) {
 
 void aisle_tangent_carve(aisle_tangent *self, aisle_arena *arena, const aisle_limits *limits) {
     uint32_t cells = or_default(limits->cells, AISLE_LIMITS_CELLS_DEFAULT);
-    self->zones = or_default(limits->polygons, AISLE_LIMITS_POLYGONS_DEFAULT);
-    self->corners = 2U * or_default(limits->vertices, AISLE_LIMITS_VERTICES_DEFAULT);
+    uint32_t rects = cells / 64U < AISLE_LAYOUT_RECTS_MAX ? cells / 64U : AISLE_LAYOUT_RECTS_MAX;
+    self->blocks = or_default(limits->polygons, AISLE_LIMITS_POLYGONS_DEFAULT) + rects;
+    self->corners = or_default(limits->vertices, AISLE_LIMITS_VERTICES_DEFAULT) + 4U * rects;
     self->capacity = (uint32_t)aisle_clamp((double)cells / 64.0, 1024.0, (double)AISLE_TANGENT_NODES_MAX);
-    self->expanded = (uint32_t *)aisle_arena_take(arena, self->corners, sizeof(uint32_t));
-    self->seen = (uint32_t *)aisle_arena_take(arena, self->zones, sizeof(uint32_t));
-    aisle_heap_carve(&self->open, arena, self->capacity);
-}
-
-void aisle_tangent_carve_nodes(aisle_tangent *self, aisle_arena *arena) {
     self->nodes = (aisle_tangent_node *)aisle_arena_take(arena, self->capacity, sizeof(aisle_tangent_node));
+    self->expanded = (uint32_t *)aisle_arena_take(arena, 2U * (size_t)self->corners, sizeof(uint32_t));
+    self->seen = (uint32_t *)aisle_arena_take(arena, self->blocks, sizeof(uint32_t));
+    aisle_heap_carve(&self->open, arena, self->capacity);
 }
 
 // ---- geometry
@@ -78,7 +76,7 @@ static bool may_stand(const aisle_tangent *self, aisle_vec2 p) {
 
 static void add(aisle_tangent *self, const aisle_tangent_node *node, double f) {
     self->nodes[self->count] = *node;
-    aisle_status st = aisle_heap_push(&self->open, self->count, key_of(f));
+    aisle_status st = aisle_heap_add(&self->open, self->count, key_of(f));
     AISLE_ASSERT(st == AISLE_OK);
     self->count++;
 }
@@ -108,23 +106,26 @@ aisle_status aisle_tangent_push(aisle_tangent *self, uint32_t from, const aisle_
 
 // ---- search
 
-static void forget_corners(aisle_tangent *self) {
-    memset(self->seen, 0, aisle_layout_zone_count(self->layout) * sizeof(uint32_t));
-    memset(self->expanded, 0xFF, 2U * (size_t)aisle_layout_vertex_count(self->layout) * sizeof(uint32_t));
+static void forget(aisle_tangent *self) {
+    uint32_t corners = aisle_layout_corner_count(self->layout);
+    uint32_t blocks = aisle_layout_block_count(self->layout);
+    AISLE_ASSERT(corners <= self->corners && blocks <= self->blocks);
+    memset(self->seen, 0, blocks * sizeof(uint32_t));
+    memset(self->expanded, 0xFF, 2U * (size_t)corners * sizeof(uint32_t));
+    aisle_heap_forget(&self->open);
+    self->stamp = 1U;
 }
 
 void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double radius, aisle_vec2 start,
                          aisle_vec2 goal) {
-    AISLE_ASSERT(radius >= 0.0 && !aisle_layout_has_scan(layout));
+    AISLE_ASSERT(radius >= 0.0 && aisle_layout_has_blocks(layout));
     self->layout = layout;
     self->radius = radius;
     self->allowed = aisle_aabb_grow(aisle_layout_bounds(layout), -radius);
     self->goal = goal;
     self->count = self->expansions = self->tests = self->units = 0U;
     self->found = AISLE_TANGENT_NONE;
-    aisle_heap_clear(&self->open);
-    forget_corners(self);
-    self->stamp = 1U;
+    forget(self);
     self->bound = aisle_vec2_distance(start, goal);
     bool ends_free = may_stand(self, start) && may_stand(self, goal) &&
                      aisle_tangent_line_free(self, radius, start, start) &&
@@ -132,7 +133,7 @@ void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double
     if (ends_free) {
         aisle_tangent_node node = {.centre = start,
                                    .corner = AISLE_TANGENT_NONE,
-                                   .zone = AISLE_TANGENT_NONE,
+                                   .block = AISLE_TANGENT_NONE,
                                    .parent = AISLE_TANGENT_NONE,
                                    .next = AISLE_TANGENT_NONE};
         add(self, &node, self->bound);

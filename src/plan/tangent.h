@@ -1,4 +1,4 @@
-// tangent.h - the exact shortest way of a disc among convex polygons: a lazy tangent graph. Level 4.
+// tangent.h - the exact shortest way of a disc through a layout: a lazy tangent graph. Level 4.
 //
 // The shortest way of a disc of radius R is a chain of straight lines and of arcs of radius R about corners of
 // obstacles, each line tangent to the arcs at its ends (Chew 1985, doi:10.1145/323233.323261; Liu & Arimoto 1992,
@@ -13,10 +13,10 @@
 // lines are not pushed, and the rings end where every direction is hidden (256 bins).
 // Exact: touching counts as free, to 1e-9 m. So the first line to reach the goal ends the shortest way of all, the
 // f value of the node under way is a lower bound on its length at any time, and an empty open list proves that no way
-// of that width exists. Scanned cells and the way the body turns are not looked at: the caller asks only where there is
-// no scan.
+// of that width exists. Scanned cells are looked at as the rectangles that cover them, of which only the corners where
+// the occupied ground is convex can turn a way.
 //
-// Memory: 88 bytes a node, 8 a vertex, 4 a polygon, from the arena. Time: about 3 us an expansion (20 to 40 obstacles
+// Memory: 88 bytes a node, 8 a corner, 4 a block (layout.h), all of it free for others between searches. Time: about 3 us an expansion (20 to 40 obstacles
 // seen), 0.3 us a tested line; one work unit stands for two obstacles looked at. Sliced by node.
 #ifndef AISLE_PLAN_TANGENT_H
 #define AISLE_PLAN_TANGENT_H
@@ -34,9 +34,9 @@ typedef struct aisle_tangent_node { // arrival at a circle
     aisle_vec2 d;                   // unit direction of arrival
     aisle_vec2 centre;
     double rho;      // m, signed radius: positive with the centre on the left; 0 start and goal
-    uint32_t corner; // 2 * vertex, + 1 for side -1; AISLE_TANGENT_NONE for start and goal
-    uint32_t zone;   // the vertex is its; AISLE_TANGENT_NONE for start and goal
-    uint32_t at;     // which of the zone's vertices
+    uint32_t corner; // 2 * corner of the layout, + 1 for side -1; AISLE_TANGENT_NONE for start and goal
+    uint32_t block;  // the corner is its; AISLE_TANGENT_NONE for start and goal
+    uint32_t at;     // which of the block's vertices
     uint32_t parent;
     uint32_t next; // expanded earlier at the same corner
 } aisle_tangent_node;
@@ -48,9 +48,9 @@ typedef struct aisle_tangent {
     aisle_vec2 goal;
     aisle_tangent_node *nodes; // [capacity]
     aisle_heap open;           // of nodes, by f
-    uint32_t *expanded;        // [2 * vertices] newest expanded node at a corner
-    uint32_t *seen;            // [zones] stamp of the last visit
-    uint32_t capacity, corners, zones, count, stamp;
+    uint32_t *expanded;        // [2 * corners] newest expanded node at a corner
+    uint32_t *seen;            // [blocks] stamp of the last visit
+    uint32_t capacity, corners, blocks, count, stamp;
     float depth[AISLE_TANGENT_BINS]; // m, beyond which a direction is hidden from the node under way
     double bound;                    // m, no way is shorter
     uint32_t found;                  // the goal's node
@@ -58,11 +58,10 @@ typedef struct aisle_tangent {
     uint32_t units;
 } aisle_tangent;
 
+// What it carves others may use between the end of a search and the next start.
 void aisle_tangent_carve(aisle_tangent *self, aisle_arena *arena, const aisle_limits *limits);
-// The nodes, whose memory others may use between the end of a search and the next start.
-void aisle_tangent_carve_nodes(aisle_tangent *self, aisle_arena *arena);
 
-// Begins the search of a disc's way; radius >= 0. Start and goal may be anywhere: what is not free for the disc has no
+// Begins the search of a disc's way; radius >= 0; the layout has_blocks(). Start and goal may be anywhere: what is not free for the disc has no
 // way.
 void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double radius, aisle_vec2 start,
                          aisle_vec2 goal);

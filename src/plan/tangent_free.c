@@ -36,26 +36,28 @@ static bool is_clear_of(const straight *way, const aisle_convex *shape) {
     return gap > 0.0 && gap >= way->radius; // a way through a polygon has no gap
 }
 
-static bool is_zone_clear(aisle_tangent *self, const straight *way, uint32_t index) {
-    const aisle_zone *zone = aisle_layout_zone(self->layout, index);
-    aisle_vec2 centre = aisle_vec2_lerp(zone->box.lo, zone->box.hi, 0.5);
-    double reach = 0.5 * aisle_vec2_distance(zone->box.lo, zone->box.hi) + way->radius;
-    if (!aisle_zone_is_obstacle(zone) || fabs(aisle_vec2_cross(way->d, aisle_vec2_sub(centre, way->p))) > reach) {
+static bool is_block_clear(aisle_tangent *self, const straight *way, uint32_t index) {
+    const aisle_aabb box = aisle_layout_block_box(self->layout, index);
+    aisle_vec2 centre = aisle_vec2_lerp(box.lo, box.hi, 0.5);
+    double aside = fabs(aisle_vec2_cross(way->d, aisle_vec2_sub(centre, way->p)));
+    double half = 0.5 * ((box.hi.x - box.lo.x) * fabs(way->d.y) + (box.hi.y - box.lo.y) * fabs(way->d.x));
+    if (aside > half + way->radius) {
         return true;
     }
+    aisle_layout_block block;
+    aisle_layout_block_at(self->layout, index, &block);
     self->units++;
-    const aisle_convex shape = aisle_layout_zone_shape(self->layout, zone);
-    return is_clear_of(way, &shape);
+    return !block.is_obstacle || is_clear_of(way, &block.shape);
 }
 
-// Every zone of a bucket that was not looked at under this stamp.
+// Every block of a bucket that was not looked at under this stamp.
 static bool is_bucket_clear(aisle_tangent *self, const straight *way, uint32_t bucket, uint32_t stamp) {
     const aisle_layout_index *wide = aisle_layout_wide(self->layout);
     for (uint32_t at = wide->starts[bucket]; at < wide->starts[bucket + 1U]; at++) {
         uint32_t index = wide->entries[at];
         if (self->seen[index] != stamp) {
             self->seen[index] = stamp;
-            if (!is_zone_clear(self, way, index)) {
+            if (!is_block_clear(self, way, index)) {
                 return false;
             }
         }
@@ -135,6 +137,26 @@ static bool is_arc_clear_of(const bend *arc, double radius, const aisle_convex *
     return true;
 }
 
+static bool is_arc_clear_in(aisle_tangent *self, double radius, const bend *arc, uint32_t bucket, uint32_t stamp) {
+    const aisle_layout_index *wide = aisle_layout_wide(self->layout);
+    aisle_aabb near = aisle_aabb_grow((aisle_aabb){arc->about.centre, arc->about.centre}, 2.0 * radius);
+    for (uint32_t at = wide->starts[bucket]; at < wide->starts[bucket + 1U]; at++) {
+        uint32_t index = wide->entries[at];
+        if (self->seen[index] == stamp || !aisle_aabb_overlap(near, aisle_layout_block_box(self->layout, index))) {
+            continue;
+        }
+        self->seen[index] = stamp;
+        aisle_layout_block block;
+        aisle_layout_block_at(self->layout, index, &block);
+        self->units++;
+        if (block.is_obstacle && aisle_convex_point_gap(&block.shape, arc->about.centre) < 2.0 * radius &&
+            !is_arc_clear_of(arc, radius, &block.shape)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool aisle_tangent_arc_free(aisle_tangent *self, double radius, const aisle_tangent_node *node, aisle_vec2 from,
                             aisle_vec2 to) {
     double side = aisle_node_side(node);
@@ -146,17 +168,16 @@ bool aisle_tangent_arc_free(aisle_tangent *self, double radius, const aisle_tang
     if (!is_within(self, radius, &arc)) {
         return false;
     }
-    const aisle_zone *own = aisle_layout_zone(self->layout, node->zone); // lies behind the arc all along
-    const aisle_zone *zone;
-    aisle_aabb box = aisle_aabb_grow((aisle_aabb){node->centre, node->centre}, 2.0 * radius);
-    for (aisle_layout_walk w = aisle_layout_walk_over(self->layout, box); aisle_layout_walk_next(&w, &zone);) {
-        if (!aisle_zone_is_obstacle(zone) || zone == own) {
-            continue;
-        }
-        self->units++;
-        const aisle_convex shape = aisle_layout_zone_shape(self->layout, zone);
-        if (aisle_convex_point_gap(&shape, node->centre) < 2.0 * radius && !is_arc_clear_of(&arc, radius, &shape)) {
-            return false;
+    const aisle_layout_index *wide = aisle_layout_wide(self->layout);
+    aisle_aabb near = aisle_aabb_grow((aisle_aabb){node->centre, node->centre}, 2.0 * radius);
+    aisle_bucket_range r = aisle_layout_index_range(wide, near);
+    uint32_t stamp = aisle_tangent_stamp(self);
+    self->seen[node->block] = stamp; // the corner's own block lies behind the arc all along
+    for (uint32_t y = r.y0; y <= r.y1; y++) {
+        for (uint32_t x = r.x0; x <= r.x1; x++) {
+            if (!is_arc_clear_in(self, radius, &arc, y * wide->nx + x, stamp)) {
+                return false;
+            }
         }
     }
     return true;

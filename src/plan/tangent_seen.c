@@ -132,16 +132,19 @@ typedef struct sight { // of one obstacle
     uint32_t rights, lefts;
 } sight;
 
-// The lines to both sides of corner i of the zone's shape.
-static void look_at_corner(view *v, const aisle_zone *zone, uint32_t index, const aisle_convex *shape, uint32_t i,
-                           sight *s) {
+// The lines to both sides of vertex i of the block.
+static void look_at_corner(view *v, uint32_t index, const aisle_layout_block *block, uint32_t i, sight *s) {
+    const aisle_convex *shape = &block->shape;
     aisle_vec2 w = shape->v[i];
     aisle_vec2 in = aisle_vec2_sub(w, shape->v[i > 0U ? i - 1U : shape->n - 1U]);
     aisle_vec2 out = aisle_vec2_sub(shape->v[i + 1U < shape->n ? i + 1U : 0U], w);
     for (uint32_t k = 0; k < 2U; k++) {
         double side = k == 0U ? 1.0 : -1.0;
-        aisle_tangent_node to = {
-            .centre = w, .rho = side * v->self->radius, .corner = 2U * (zone->first + i) + k, .zone = index, .at = i};
+        aisle_tangent_node to = {.centre = w,
+                                 .rho = side * v->self->radius,
+                                 .corner = 2U * (block->corner + i) + k,
+                                 .block = index,
+                                 .at = i};
         aisle_tangent_line line;
         bool touches = aisle_tangent_between(v->circle, aisle_node_circle(&to), &line) &&
                        (k == 0U ? is_between(in, out, line.d, 1.0)
@@ -152,24 +155,30 @@ static void look_at_corner(view *v, const aisle_zone *zone, uint32_t index, cons
         *(k == 0U ? &s->right : &s->left) = line;
         *(k == 0U ? &s->rights : &s->lefts) += 1U;
         to.d = line.d;
-        offer(v, &to, &line);
+        if ((block->real >> i & 1U) != 0U) {
+            offer(v, &to, &line);
+        }
     }
 }
 
-static void look_at_zone(view *v, uint32_t index) {
-    const aisle_zone *zone = aisle_layout_zone(v->self->layout, index);
-    const box around = {aisle_vec2_lerp(zone->box.lo, zone->box.hi, 0.5),
-                        aisle_vec2_scale(aisle_vec2_sub(zone->box.hi, zone->box.lo), 0.5)};
-    if (!aisle_zone_is_obstacle(zone) || is_aside(v, &around) || is_hidden(v, &around)) {
+static void look_at_block(view *v, uint32_t index) {
+    const aisle_aabb bounds = aisle_layout_block_box(v->self->layout, index);
+    const box around = {aisle_vec2_lerp(bounds.lo, bounds.hi, 0.5),
+                        aisle_vec2_scale(aisle_vec2_sub(bounds.hi, bounds.lo), 0.5)};
+    if (is_aside(v, &around) || is_hidden(v, &around)) {
         return;
     }
-    const aisle_convex shape = aisle_layout_zone_shape(v->self->layout, zone);
+    aisle_layout_block block;
+    aisle_layout_block_at(v->self->layout, index, &block);
+    if (!block.is_obstacle) {
+        return;
+    }
     sight s = {.rights = 0};
-    for (uint32_t i = 0; i < shape.n; i++) {
-        look_at_corner(v, zone, index, &shape, i, &s);
+    for (uint32_t i = 0; i < block.shape.n; i++) {
+        look_at_corner(v, index, &block, i, &s);
     }
     // One tangent on either side: it is seen from outside as a convex thing is.
-    if (s.rights == 1U && s.lefts == 1U && v->self->nodes[v->from].zone != index) {
+    if (s.rights == 1U && s.lefts == 1U && v->self->nodes[v->from].block != index) {
         double beyond = aisle_max(s.right.length, s.left.length) + 2.0 * v->self->radius;
         hide_between(v, s.right.d, s.left.d, beyond);
     }
@@ -189,7 +198,7 @@ static void look_at_bucket(view *v, uint32_t bx, uint32_t by) {
         uint32_t index = wide->entries[at];
         if (v->self->seen[index] != v->stamp) {
             v->self->seen[index] = v->stamp;
-            look_at_zone(v, index);
+            look_at_block(v, index);
         }
     }
 }
@@ -229,7 +238,7 @@ static void look_at_goal(view *v) {
     aisle_circle goal = {v->self->goal, 0.0};
     if (aisle_tangent_between(v->circle, goal, &line)) {
         aisle_tangent_node to = {
-            .centre = goal.centre, .d = line.d, .corner = AISLE_TANGENT_NONE, .zone = AISLE_TANGENT_NONE};
+            .centre = goal.centre, .d = line.d, .corner = AISLE_TANGENT_NONE, .block = AISLE_TANGENT_NONE};
         offer(v, &to, &line);
     }
 }
@@ -245,7 +254,9 @@ aisle_status aisle_tangent_see(aisle_tangent *self, uint32_t from) {
               .stamp = aisle_tangent_stamp(self),
               .st = AISLE_OK};
     if (!v.all_round) {
-        const aisle_convex shape = aisle_layout_zone_shape(self->layout, aisle_layout_zone(self->layout, node->zone));
+        aisle_layout_block block;
+        aisle_layout_block_at(self->layout, node->block, &block);
+        const aisle_convex shape = block.shape;
         uint32_t i = node->at;
         uint32_t after = v.side > 0.0 ? (i + 1U < shape.n ? i + 1U : 0U) : (i > 0U ? i - 1U : shape.n - 1U);
         aisle_vec2 edge = aisle_vec2_sub(shape.v[after], shape.v[i]);

@@ -23,7 +23,8 @@ void aisle_layout_carve(aisle_layout *self, aisle_arena *arena, const aisle_limi
     AISLE_ASSERT(PATCH_IDS <= AISLE_LAYOUT_MAX_POLYGONS); // one map does for either message
     aisle_id_map_carve(&staging->message, arena, AISLE_LAYOUT_MAX_POLYGONS);
     aisle_layout_index_carve(&self->index, arena, zones);
-    aisle_layout_index_carve(&self->wide, arena, zones);
+    aisle_layout_rects_carve(&self->rects, arena, cells);
+    aisle_layout_index_carve(&self->wide, arena, zones + self->rects.capacity);
     aisle_grid_carve(&self->grid, arena, cells);
 }
 
@@ -45,10 +46,6 @@ const aisle_grid *aisle_layout_grid(const aisle_layout *self) {
     return &self->grid;
 }
 
-const aisle_layout_index *aisle_layout_wide(const aisle_layout *self) {
-    return &self->wide;
-}
-
 aisle_aabb aisle_layout_bounds(const aisle_layout *self) {
     const aisle_layout_store *store = aisle_layout_held(self);
     aisle_aabb area = store->header.bounds;
@@ -63,10 +60,6 @@ aisle_aabb aisle_layout_bounds(const aisle_layout *self) {
 
 uint32_t aisle_layout_zone_count(const aisle_layout *self) {
     return aisle_layout_held(self)->zone_count;
-}
-
-uint32_t aisle_layout_vertex_count(const aisle_layout *self) {
-    return aisle_layout_held(self)->vertex_count;
 }
 
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index) {
@@ -85,6 +78,57 @@ bool aisle_layout_has_scan(const aisle_layout *self) {
 bool aisle_layout_scan_run(const aisle_layout *self, uint32_t iy, uint32_t *ix0, uint32_t ix1, uint32_t *end) {
     AISLE_ASSERT(aisle_layout_has_scan(self));
     return aisle_layout_store_run(aisle_layout_held(self), iy, ix0, ix1, end);
+}
+
+// ---- blocks
+
+static aisle_layout_blocks blocks_of(const aisle_layout *self) {
+    return (aisle_layout_blocks){aisle_layout_held(self), aisle_layout_has_scan(self) ? &self->rects : NULL};
+}
+
+bool aisle_layout_has_blocks(const aisle_layout *self) {
+    return !(aisle_layout_has_scan(self) && self->rects.overflow);
+}
+
+uint32_t aisle_layout_block_count(const aisle_layout *self) {
+    const aisle_layout_blocks blocks = blocks_of(self);
+    return aisle_layout_blocks_count(&blocks);
+}
+
+uint32_t aisle_layout_corner_count(const aisle_layout *self) {
+    const aisle_layout_store *store = aisle_layout_held(self);
+    return store->vertex_count + (aisle_layout_has_scan(self) ? 4U * self->rects.count : 0U);
+}
+
+aisle_aabb aisle_layout_block_box(const aisle_layout *self, uint32_t index) {
+    const aisle_layout_blocks blocks = blocks_of(self);
+    return aisle_layout_blocks_box(&blocks, index);
+}
+
+void aisle_layout_block_at(const aisle_layout *self, uint32_t index, aisle_layout_block *out) {
+    const aisle_layout_store *store = aisle_layout_held(self);
+    if (index < store->zone_count) {
+        const aisle_zone *zone = &store->zones[index];
+        out->shape = aisle_layout_zone_shape(self, zone);
+        out->corner = zone->first;
+        out->real = UINT32_MAX;
+        out->is_obstacle = aisle_zone_is_obstacle(zone);
+        return;
+    }
+    const uint32_t i = index - store->zone_count;
+    const aisle_aabb box = aisle_layout_block_box(self, index);
+    out->v[0] = box.lo;
+    out->v[1] = aisle_vec2_of(box.hi.x, box.lo.y);
+    out->v[2] = box.hi;
+    out->v[3] = aisle_vec2_of(box.lo.x, box.hi.y);
+    out->shape = (aisle_convex){out->v, 4U, 0.0};
+    out->corner = store->vertex_count + 4U * i;
+    out->real = self->rects.real[i];
+    out->is_obstacle = true;
+}
+
+const aisle_layout_index *aisle_layout_wide(const aisle_layout *self) {
+    return &self->wide;
 }
 
 // ---- walk

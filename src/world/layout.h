@@ -12,7 +12,7 @@
 // A resolution is a float on the wire; one that is the float nearest to a whole number of micrometres is read as that
 // (0.05F as 0.05).
 // Bucket index: square buckets, CSR lists of polygon indices, side doubled until the lists fit. Two of them: a narrow
-// one (from AISLE_LAYOUT_BUCKET on) for what is near, a wide one (about one polygon a bucket) for what is seen from afar.
+// one (from AISLE_LAYOUT_BUCKET on) of the polygons near a place, a wide one (about one a bucket) of all blocks.
 //
 // Revisions rise strictly for one map_id; another map_id is another map and may have any. A part of a newer revision,
 // or of another map, ends the staging of an older one. Order of zones: as in the parts in order, whatever the order
@@ -98,7 +98,8 @@ typedef struct aisle_layout {
     uint32_t next; // build progress in the phase
     aisle_layout_staging staging;
     aisle_layout_index index; // of the active store
-    aisle_layout_index wide;  // the same in wide buckets
+    aisle_layout_index wide;  // of its blocks
+    aisle_layout_rects rects; // of its scan
     aisle_grid grid;          // of the active store
 } aisle_layout;
 
@@ -132,10 +133,24 @@ aisle_status aisle_layout_build(aisle_layout *self, uint32_t units);
 const aisle_grid *aisle_layout_grid(const aisle_layout *self);
 aisle_aabb aisle_layout_bounds(const aisle_layout *self); // with a scan: what they have in common with its extent
 uint32_t aisle_layout_zone_count(const aisle_layout *self);
-uint32_t aisle_layout_vertex_count(const aisle_layout *self); // zone->first + i is below it
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index);
 aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone *zone);
-const aisle_layout_index *aisle_layout_wide(const aisle_layout *self);
+
+// Blocks: the layout as convex things alone. The zones, by index, then the rectangles that cover the scan's cells; not
+// all that are there if has_blocks() is false (AISLE_LAYOUT_RECTS_MAX).
+typedef struct aisle_layout_block {
+    aisle_vec2 v[4];    // of a rectangle
+    aisle_convex shape; // points into v or the layout
+    uint32_t corner;    // number of its first corner, of all blocks' corners; below corner_count()
+    uint32_t real;      // bit i: at vertex i obstacles are convex (layout_rects.h)
+    bool is_obstacle;
+} aisle_layout_block;
+bool aisle_layout_has_blocks(const aisle_layout *self);
+uint32_t aisle_layout_block_count(const aisle_layout *self);
+uint32_t aisle_layout_corner_count(const aisle_layout *self);
+aisle_aabb aisle_layout_block_box(const aisle_layout *self, uint32_t index);
+void aisle_layout_block_at(const aisle_layout *self, uint32_t index, aisle_layout_block *out);
+const aisle_layout_index *aisle_layout_wide(const aisle_layout *self); // over the blocks
 static inline bool aisle_zone_is_obstacle(const aisle_zone *zone) {
     return zone->kind == AISLE_POLYGON_OBSTACLE || zone->kind == AISLE_POLYGON_KEEPOUT;
 }

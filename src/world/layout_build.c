@@ -1,7 +1,17 @@
 #include "base/check.h"
 #include "world/layout_internal.h"
 
-enum { PHASE_NONE, PHASE_INDEX, PHASE_CLEAR, PHASE_ZONES, PHASE_SCAN, PHASE_BORDER, PHASE_FIELD, PHASE_DONE };
+enum {
+    PHASE_NONE,
+    PHASE_RECTS,
+    PHASE_INDEX,
+    PHASE_CLEAR,
+    PHASE_ZONES,
+    PHASE_SCAN,
+    PHASE_BORDER,
+    PHASE_FIELD,
+    PHASE_DONE
+};
 
 bool aisle_layout_is_in_force(const aisle_layout *self) {
     return self->phase == PHASE_DONE;
@@ -12,7 +22,8 @@ void aisle_layout_commit(aisle_layout *self) {
     self->active = (uint8_t)(1U - self->active);
     self->has_active = true;
     self->staging.stage = AISLE_STAGE_EMPTY;
-    self->phase = PHASE_INDEX;
+    self->phase = PHASE_RECTS;
+    aisle_layout_rects_clear(&self->rects);
     self->next = 0;
 }
 
@@ -53,10 +64,13 @@ static void mark_border(aisle_layout *self) {
 
 static void build_indices(aisle_layout *self) {
     const aisle_layout_store *store = aisle_layout_active(self);
+    const aisle_layout_blocks zones = {store, NULL};
+    const aisle_layout_blocks blocks = {store, aisle_layout_has_scan(self) ? &self->rects : NULL};
     const aisle_vec2 size = aisle_vec2_sub(store->header.bounds.hi, store->header.bounds.lo);
-    const double share = sqrt(size.x * size.y / (double)(store->zone_count + 1U));
-    aisle_layout_index_build(&self->index, store, AISLE_LAYOUT_BUCKET);
-    aisle_layout_index_build(&self->wide, store, aisle_max(share, AISLE_LAYOUT_BUCKET_WIDE));
+    const double share = sqrt(size.x * size.y / (double)(aisle_layout_blocks_count(&blocks) + 1U));
+    aisle_layout_rects_find_corners(&self->rects, store);
+    aisle_layout_index_build(&self->index, &zones, AISLE_LAYOUT_BUCKET);
+    aisle_layout_index_build(&self->wide, &blocks, aisle_max(share, AISLE_LAYOUT_BUCKET_WIDE));
 }
 
 // Items of one unit each in a phase.
@@ -64,8 +78,9 @@ static uint32_t phase_items(const aisle_layout *self) {
     switch (self->phase) {
     case PHASE_ZONES:
         return aisle_layout_zone_count(self);
+    case PHASE_RECTS:
     case PHASE_SCAN:
-        return aisle_layout_has_scan(self) ? self->grid.lattice.h : 0U;
+        return aisle_layout_has_scan(self) ? aisle_layout_held(self)->lattice.h : 0U;
     default:
         return 1U;
     }
@@ -74,6 +89,9 @@ static uint32_t phase_items(const aisle_layout *self) {
 static void do_item(aisle_layout *self) {
     aisle_status status = AISLE_OK;
     switch (self->phase) {
+    case PHASE_RECTS:
+        aisle_layout_rects_add_row(&self->rects, aisle_layout_active(self), self->next);
+        break;
     case PHASE_INDEX:
         build_indices(self);
         break;

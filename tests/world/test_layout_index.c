@@ -20,7 +20,8 @@ static void build(uint32_t count, double width, double height) {
         aisle_layout_store_add(&store, &scene.polygons[i]);
     }
     store.header.bounds = (aisle_aabb){{0, 0}, {width, height}};
-    aisle_layout_index_build(&bucket_index, &store, SIDE);
+    const aisle_layout_blocks blocks = {&store, NULL};
+    aisle_layout_index_build(&bucket_index, &blocks, SIDE);
 }
 
 // Every zone is listed, once and in rising order, in exactly the buckets its box reaches into.
