@@ -6,6 +6,8 @@
 
 #define ANGLE_TOUCH 1e-9 // relative: a line along an edge counts as tangent to both of its corners
 
+#define ASIDE_TOUCH 1e-6 // m, what the view's rim touches within the circles is not aside
+
 typedef struct view { // from the node under way
     aisle_tangent *self;
     uint32_t from;
@@ -101,7 +103,7 @@ static double reach_along(const box *b, aisle_vec2 d) {
 
 // Does the box lie beside all that lines of the view sweep?
 static bool is_aside(const view *v, const box *b) {
-    const double radius = v->self->radius;
+    const double radius = v->self->radius + ASIDE_TOUCH;
     return !v->all_round && (v->side * aisle_vec2_cross(v->first, aisle_vec2_sub(b->centre, v->first_at)) <
                                  -radius - reach_along(b, aisle_turned_left(v->first)) ||
                              v->side * aisle_vec2_cross(v->last, aisle_vec2_sub(b->centre, v->last_at)) >
