@@ -160,7 +160,8 @@ static aisle_status settle(aisle_tangent *self, uint32_t item) {
     if (is_dominated(self, node) || !is_way_free(self, node)) {
         return AISLE_BUSY;
     }
-    if (node->corner == AISLE_TANGENT_NONE && node->parent != AISLE_TANGENT_NONE) {
+    bool is_there = node->corner == AISLE_TANGENT_NONE && aisle_vec2_distance(node->centre, self->goal) < 1e-9;
+    if (is_there) { // the goal, or a start that is one
         self->found = item;
         return AISLE_OK;
     }

@@ -141,6 +141,26 @@ static void test_clear_empties_it_and_keeps_the_high_water_mark(void) {
     test_a_fresh_heap_is_empty();
 }
 
+static void test_a_forgotten_heap_works_whatever_its_arrays_hold(void) {
+    memset(heap.key, 0xA5, CAPACITY * sizeof heap.key[0]);
+    memset(heap.slot, 0x03, CAPACITY * sizeof heap.slot[0]);
+    memset(heap.order, 0x5A, CAPACITY * sizeof heap.order[0]);
+    aisle_heap_forget(&heap);
+    TEST_ASSERT_EQUAL_UINT32(AISLE_HEAP_NONE, aisle_heap_pop(&heap));
+    for (uint32_t item = 0; item < CAPACITY; item++) {
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_heap_add(&heap, item, 1000U - 7U * item % 50U));
+    }
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_heap_add(&heap, CAPACITY, 1));
+    TEST_ASSERT_TRUE(aisle_heap_invariants_hold(&heap));
+    uint64_t last = 0;
+    for (uint32_t i = 0; i < CAPACITY; i++) {
+        const uint32_t item = aisle_heap_pop(&heap);
+        TEST_ASSERT_TRUE(heap.key[item] >= last);
+        last = heap.key[item];
+    }
+    TEST_ASSERT_EQUAL_UINT32(AISLE_HEAP_NONE, aisle_heap_pop(&heap));
+}
+
 static void test_capacity_zero_takes_nothing(void) {
     carve(0);
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_heap_push(&heap, 0, 0));
@@ -181,6 +201,7 @@ int main(void) {
     RUN_TEST(test_a_popped_item_may_come_back_with_a_higher_key);
     RUN_TEST(test_behaves_like_a_searched_array_for_60_of_60_seeds);
     RUN_TEST(test_clear_empties_it_and_keeps_the_high_water_mark);
+    RUN_TEST(test_a_forgotten_heap_works_whatever_its_arrays_hold);
     RUN_TEST(test_capacity_zero_takes_nothing);
     RUN_TEST(test_invariants_notice_spoilt_fields);
     return UNITY_END();
