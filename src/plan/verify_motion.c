@@ -3,8 +3,9 @@
 #include "base/angle.h"
 #include "base/check.h"
 
-#define TRAVEL_MIN 1e-3 // m of every body point, below which no interval is halved
-#define LENGTH_MAX 1.0  // m of an interval looked at
+#define TRAVEL_MIN 1e-3  // m of every body point, below which no interval is halved
+#define LENGTH_MAX 2.0   // m of an interval looked at
+#define APART_SPARE 1e-9 // m, and axes shorter than 1e-150 part nothing since their squares are 0
 
 typedef struct sweep { // the footprint at both ends of an interval, and how far the body is to be thought around their
                        // hull
@@ -101,7 +102,67 @@ static void make_hull(sweep *self) {
 
 // ---- obstacles
 
+typedef struct extent { // along an axis, times the axis's length
+    double lo, hi;
+} extent;
+
+static extent extent_of(const aisle_vec2 *v, uint32_t n, aisle_vec2 origin, aisle_vec2 axis) {
+    extent e = {DBL_MAX, -DBL_MAX};
+    for (uint32_t i = 0; i < n; i++) {
+        double at = aisle_vec2_dot(aisle_vec2_sub(v[i], origin), axis);
+        e.lo = aisle_min(e.lo, at);
+        e.hi = aisle_max(e.hi, at);
+    }
+    return e;
+}
+
+// Does a strip across `axis`, wider than the body's reach, lie between the body's points and the obstacle's? Then so it
+// does between their hulls. Both are measured, so it does not matter where the axis comes from; APART_SPARE is more than
+// what the products round at coordinates within AISLE_SHAPE_COORD_MAX. An axis of no length parts nothing.
+static bool is_apart_along(const sweep *s, const aisle_vec2 *v, uint32_t n, aisle_vec2 axis) {
+    extent a = extent_of(s->a, s->n, s->a[0], axis), b = extent_of(s->b, s->n, s->a[0], axis);
+    extent obstacle = extent_of(v, n, s->a[0], axis);
+    double gap = aisle_max(obstacle.lo - aisle_max(a.hi, b.hi), aisle_min(a.lo, b.lo) - obstacle.hi);
+    double wanted = s->reach + APART_SPARE;
+    return gap > 0.0 && gap * gap > wanted * wanted * aisle_vec2_dot(axis, axis);
+}
+
+// From the body's point to the obstacle's that is nearest to it, among their given points.
+static aisle_vec2 nearest_way(const sweep *s, const aisle_vec2 *v, uint32_t n) {
+    aisle_vec2 best = {0.0, 0.0};
+    double least = DBL_MAX;
+    for (uint32_t i = 0; i < 2 * s->n; i++) {
+        aisle_vec2 p = i < s->n ? s->a[i] : s->b[i - s->n];
+        for (uint32_t k = 0; k < n; k++) {
+            aisle_vec2 way = aisle_vec2_sub(v[k], p);
+            double square = aisle_vec2_dot(way, way);
+            best = square < least ? way : best;
+            least = aisle_min(square, least);
+        }
+    }
+    return best;
+}
+
+// A cheap proof that they do not touch, for most that do not: across the way driven, along the way between the nearest
+// points, across the obstacle's edges. For a disc these are all the axes there are.
+static bool is_apart(const sweep *s, const aisle_vec2 *v, uint32_t n) {
+    aisle_vec2 way = aisle_vec2_sub(s->b[0], s->a[0]);
+    if (is_apart_along(s, v, n, aisle_vec2_of(-way.y, way.x)) || is_apart_along(s, v, n, nearest_way(s, v, n))) {
+        return true;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        aisle_vec2 edge = aisle_vec2_sub(v[i + 1 < n ? i + 1 : 0], v[i]);
+        if (is_apart_along(s, v, n, aisle_vec2_of(edge.y, -edge.x))) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool touches(aisle_verify *self, const sweep *s, const aisle_vec2 *v, uint32_t n) {
+    if (is_apart(s, v, n)) {
+        return false;
+    }
     aisle_collide_body body = {.a = s->a, .b = s->b, .n = s->n, .radius = s->reach};
     aisle_collide_body obstacle = {.a = v, .b = NULL, .n = n, .radius = 0.0};
     return aisle_collide(&body, &obstacle, &self->collide);
