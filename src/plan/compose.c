@@ -204,28 +204,56 @@ static void append(aisle_compose *self, const aisle_waypoint_msg *to) {
     path->num_waypoints = (int16_t)(n + 1U);
 }
 
-// Cuts the part in front or appends it. What keeps the creep clearance is of one kind all along and stays whole up to
-// the length that straight pieces are joined to.
+typedef enum cut_rule { CUT, CUT_IF_NEAR, KEEP } cut_rule;
+
+// Does the field say that at f of the piece in hand the body is too near to something to be fast?
+static bool creeps_at(const aisle_compose *self, double f) {
+    const aisle_space *space = self->request.space;
+    const aisle_vehicle *vehicle = space->vehicle;
+    aisle_pose2 p = aisle_piece_at(&self->raw[self->at - 1U], &self->raw[self->at], f);
+    return aisle_grid_gap_upper(space->grid, aisle_vec2_of(p.x, p.y)) <
+           vehicle->creep_clearance + vehicle->inner_radius;
+}
+
+// What is known of a part of `length` that ends at f before its clearance is measured. What keeps the creep clearance is
+// of one kind all along and stays whole up to the length that straight pieces are joined to; so does what does not keep
+// it anywhere, unless the objective asks by how much.
+static cut_rule rule_of(const aisle_compose *self, double f, double length) {
+    bool straight = fabs((double)self->raw[self->at].curvature) <= 0.0;
+    if (length <= self->longest || !has_room(self)) {
+        return KEEP;
+    }
+    if (!straight || length > aisle_max(AISLE_COMPOSE_JOIN, self->longest)) {
+        return CUT;
+    }
+    bool first = creeps_at(self, self->done + 0.25 * (f - self->done));
+    bool second = creeps_at(self, self->done + 0.75 * (f - self->done));
+    if ((first || second) && length > aisle_max(0.5 * AISLE_COMPOSE_JOIN, self->longest)) {
+        return CUT;
+    }
+    return first && second && self->request.objective->kind != AISLE_OPTIONS_SAFEST ? KEEP : CUT_IF_NEAR;
+}
+
+// Cuts the part in front or appends it.
 static void step_part(aisle_compose *self) {
     const aisle_space *space = self->request.space;
     const aisle_waypoint_msg *to = &self->raw[self->at], *last = &self->path->waypoints[self->path->num_waypoints - 1];
     double f = self->ends[self->depth - 1U];
     double length = aisle_piece_length(to - 1, to) * (f - self->done); // 0 of a turn
-    bool straight = fabs((double)to->curvature) <= 0.0;
-    double whole = straight ? aisle_max(AISLE_COMPOSE_JOIN, self->longest) : self->longest;
-    bool may_cut = length > self->longest && has_room(self);
-    bool cut = may_cut && length > whole;
-    if (!cut) {
+    cut_rule rule = rule_of(self, f, length);
+    if (rule != CUT) {
         aisle_waypoint_msg end = part_end(self, f);
         end.clearance = float_below(aisle_space_piece_clearance(space, last, &end, &self->units));
-        cut = may_cut && (double)end.clearance < space->vehicle->creep_clearance;
-        if (!cut) {
+        bool near = (double)end.clearance < space->vehicle->creep_clearance;
+        if (rule == KEEP || !near) {
             append(self, &end);
             self->done = f;
             self->depth--;
+        } else {
+            rule = CUT;
         }
     }
-    if (cut) {
+    if (rule == CUT) {
         self->ends[self->depth++] = 0.5 * (self->done + f);
     }
     if (self->depth == 0U) {

@@ -3,10 +3,9 @@
 // Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines
 // with arcs); a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are halved
 // down to AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and
-// zones follow the place; straight ones that keep the creep clearance only down to AISLE_COMPOSE_JOIN, since no
-// objective tells their places apart. Straight neighbours of the same speed class are joined again. Clearance: space.h's
-// lower bound.
-// Speeds: profile.h.
+// zones follow the place; straight ones that keep the creep clearance only down to AISLE_COMPOSE_JOIN, and those that
+// keep it nowhere only to half of that, unless the objective is SAFEST: no other asks by how much. Straight neighbours
+// of the same speed class are joined again. Clearance: space.h's lower bound. Speeds: profile.h.
 // Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
 #ifndef AISLE_PLAN_COMPOSE_H
 #define AISLE_PLAN_COMPOSE_H
