@@ -108,7 +108,7 @@ typedef enum aisle_counter {
     AISLE_COUNTER_PATHS,            // proved paths handed out, lease renewals not counted
     AISLE_COUNTER_NO_PATHS,         // answers without a path
     AISLE_COUNTER_VERIFY_FAILED,    // candidates the verifier turned down
-    AISLE_COUNTER_NODES,            // grid nodes expanded
+    AISLE_COUNTER_NODES,            // nodes expanded, of the grid and of the tangent graph
     AISLE_COUNTER_SWARM_EVALS,      // candidate paths scored by the swarm
     AISLE_COUNTER_VERIFY_INTERVALS, // intervals of motion the verifier looked at
     AISLE_COUNTER_WORK_UNITS,       // work units spent

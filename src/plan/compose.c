@@ -21,11 +21,20 @@ bool aisle_goal_heading_is_free(const aisle_goal_msg *goal) {
     return (double)goal->tolerance_theta >= 3.14159;
 }
 
+// An arc no wider than what the seed's legs keep from everything is free by construction (curve.h); the verifier will
+// not take that for granted.
+static bool arc_is_sure(const aisle_compose *self, const aisle_waypoint_msg *to) {
+    const aisle_vehicle *vehicle = self->request.space->vehicle;
+    const double sure = vehicle->outer_radius + vehicle->margin;
+    return aisle_vehicle_is_disc(vehicle) && !self->request.legs[self->leg].use_swarm &&
+           fabs((double)to->curvature) * sure >= 1.0 - 1e-6;
+}
+
 static bool arc_free(void *ctx, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
     aisle_compose *self = (aisle_compose *)ctx;
     const aisle_space *space = self->request.space;
-    return aisle_space_piece_clearance(space, from, to, &self->units) >=
-           space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
+    const double need = space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
+    return arc_is_sure(self, to) || aisle_space_piece_free(space, from, to, need, &self->units);
 }
 
 static aisle_corner_rule corner_rule(aisle_compose *self, bool is_tangent) {
@@ -118,58 +127,12 @@ static bool is_turn(const aisle_waypoint_msg *from) {
     return (from->flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
 }
 
-// Cuts long pieces of raw into the path's waypoints. False: too many.
-static bool cut_pieces(aisle_compose *self, double longest) {
-    aisle_path_msg *path = self->path;
-    uint32_t n = 0;
-    path->waypoints[n++] = self->raw[0];
-    for (uint32_t i = 1; i < self->raw_count; i++) {
-        const aisle_waypoint_msg *from = &self->raw[i - 1U];
-        const aisle_waypoint_msg *to = &self->raw[i];
-        double parts = is_turn(from) ? 1.0 : floor(aisle_piece_length(from, to) / longest) + 1.0;
-        if ((double)n + parts > (double)AISLE_PATH_MAX_WAYPOINTS) {
-            return false;
-        }
-        for (uint32_t k = 1; k < (uint32_t)parts; k++) {
-            aisle_pose2 p = aisle_piece_at(from, to, (double)k / parts);
-            path->waypoints[n++] = (aisle_waypoint_msg){.x = p.x,
-                                                        .y = p.y,
-                                                        .theta = aisle_angle_wrap(p.theta),
-                                                        .curvature = to->curvature,
-                                                        .flags = (int16_t)(to->flags & AISLE_WAYPOINT_REVERSE)};
-        }
-        path->waypoints[n++] = *to;
-    }
-    path->num_waypoints = (int16_t)n;
-    return true;
-}
-
 static double raw_length(const aisle_compose *self) {
     double length = 0.0;
     for (uint32_t i = 1; i < self->raw_count; i++) {
         length += aisle_piece_length(&self->raw[i - 1U], &self->raw[i]);
     }
     return length;
-}
-
-aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path) {
-    self->request = *request;
-    self->path = path;
-    self->units = 0;
-    self->at = 1;
-    aisle_curve curve = {.w = self->raw, .capacity = AISLE_PATH_MAX_WAYPOINTS};
-    const aisle_goal_msg *start = request->start;
-    double theta = aisle_goal_heading_is_free(start) ? first_heading(self) : start->theta;
-    aisle_curve_begin(&curve, (aisle_pose2){start->x, start->y, theta});
-    for (uint32_t i = 0; i < request->leg_count; i++) {
-        lay_leg(self, &curve, i);
-    }
-    self->raw_count = curve.n;
-    if (curve.overflow) {
-        return AISLE_ERR_CAPACITY;
-    }
-    double longest = aisle_max(AISLE_COMPOSE_PIECE, raw_length(self) / (double)AISLE_COMPOSE_PIECES);
-    return cut_pieces(self, longest) ? AISLE_OK : AISLE_ERR_CAPACITY;
 }
 
 // May waypoint b between a and c go, its two pieces being one straight piece of one speed class?
@@ -183,20 +146,148 @@ static bool may_join(const aisle_compose *self, const aisle_waypoint_msg *a, con
     return straight && same_class && b->flags == 0 && !is_turn(a) && aisle_piece_length(a, c) <= longest;
 }
 
-static void join_pieces(aisle_compose *self) {
-    aisle_waypoint_msg *w = self->path->waypoints;
-    uint32_t n = (uint32_t)self->path->num_waypoints;
-    uint32_t kept = 1;
-    for (uint32_t i = 1; i < n; i++) {
-        if (kept > 1U && may_join(self, &w[kept - 2U], &w[kept - 1U], &w[i])) {
-            float clearance = w[kept - 1U].clearance < w[i].clearance ? w[kept - 1U].clearance : w[i].clearance;
-            w[kept - 1U] = w[i];
-            w[kept - 1U].clearance = clearance;
+// Adds up each leg's measured cost, by the pieces before they are joined: what the comparison of seed and swarm goes by.
+static void value_piece(aisle_compose *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    self->value += aisle_piece_length(from, to) *
+                   aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
+    if ((to->flags & AISLE_WAYPOINT_GOAL) != 0 && self->leg < self->request.leg_count) {
+        aisle_leg *leg = &self->request.legs[self->leg++];
+        *(leg->use_swarm ? &leg->swarm_value : &leg->seed_value) = self->value;
+        self->value = 0.0;
+    }
+}
+
+// Largest float not above x: a clearance is told rather too small.
+static float float_below(double x) {
+    float f = (float)(x * (1.0 - 1e-7));
+    return f > 0.0F ? f : 0.0F;
+}
+
+// ---- pieces in hand
+
+static void take_piece(aisle_compose *self, uint32_t at) {
+    self->at = at;
+    self->done = 0.0;
+    self->ends[0] = 1.0;
+    self->depth = 1;
+}
+
+// Is there a waypoint to spare for a cut, every end in sight being counted?
+static bool has_room(const aisle_compose *self) {
+    uint32_t wanted = (uint32_t)self->path->num_waypoints + self->depth + (self->raw_count - self->at);
+    return wanted < AISLE_PATH_MAX_WAYPOINTS && self->depth < AISLE_COMPOSE_DEPTH;
+}
+
+// The part of the piece in hand that ends at f.
+static aisle_waypoint_msg part_end(const aisle_compose *self, double f) {
+    const aisle_waypoint_msg *to = &self->raw[self->at];
+    if (f >= 1.0) {
+        return *to;
+    }
+    aisle_pose2 p = aisle_piece_at(to - 1, to, f);
+    return (aisle_waypoint_msg){.x = p.x,
+                                .y = p.y,
+                                .theta = aisle_angle_wrap(p.theta),
+                                .curvature = to->curvature,
+                                .flags = (int16_t)(to->flags & AISLE_WAYPOINT_REVERSE)};
+}
+
+static void append(aisle_compose *self, const aisle_waypoint_msg *to) {
+    aisle_path_msg *path = self->path;
+    uint32_t n = (uint32_t)path->num_waypoints;
+    aisle_waypoint_msg *last = &path->waypoints[n - 1U];
+    value_piece(self, last, to);
+    if (n > 1U && may_join(self, last - 1, last, to)) {
+        float clearance = last->clearance < to->clearance ? last->clearance : to->clearance;
+        *last = *to;
+        last->clearance = clearance;
+        return;
+    }
+    AISLE_ASSERT(n < AISLE_PATH_MAX_WAYPOINTS);
+    path->waypoints[n] = *to;
+    path->num_waypoints = (int16_t)(n + 1U);
+}
+
+typedef enum cut_rule { CUT, CUT_IF_NEAR, KEEP } cut_rule;
+
+// Does the field say that at f of the piece in hand the body is too near to something to be fast?
+static bool creeps_at(const aisle_compose *self, double f) {
+    const aisle_space *space = self->request.space;
+    const aisle_vehicle *vehicle = space->vehicle;
+    aisle_pose2 p = aisle_piece_at(&self->raw[self->at - 1U], &self->raw[self->at], f);
+    return aisle_grid_gap_upper(space->grid, aisle_vec2_of(p.x, p.y)) <
+           vehicle->creep_clearance + vehicle->inner_radius;
+}
+
+// What is known of a part of `length` that ends at f before its clearance is measured. What keeps the creep clearance is
+// of one kind all along and stays whole up to the length that straight pieces are joined to; so does what does not keep
+// it anywhere, unless the objective asks by how much.
+static cut_rule rule_of(const aisle_compose *self, double f, double length) {
+    bool straight = fabs((double)self->raw[self->at].curvature) <= 0.0;
+    if (length <= self->longest || !has_room(self)) {
+        return KEEP;
+    }
+    if (!straight || length > aisle_max(AISLE_COMPOSE_JOIN, self->longest)) {
+        return CUT;
+    }
+    bool first = creeps_at(self, self->done + 0.25 * (f - self->done));
+    bool second = creeps_at(self, self->done + 0.75 * (f - self->done));
+    if ((first || second) && length > aisle_max(0.5 * AISLE_COMPOSE_JOIN, self->longest)) {
+        return CUT;
+    }
+    return first && second && self->request.objective->kind != AISLE_OPTIONS_SAFEST ? KEEP : CUT_IF_NEAR;
+}
+
+// Cuts the part in front or appends it.
+static void step_part(aisle_compose *self) {
+    const aisle_space *space = self->request.space;
+    const aisle_waypoint_msg *to = &self->raw[self->at], *last = &self->path->waypoints[self->path->num_waypoints - 1];
+    double f = self->ends[self->depth - 1U];
+    double length = aisle_piece_length(to - 1, to) * (f - self->done); // 0 of a turn
+    cut_rule rule = rule_of(self, f, length);
+    if (rule != CUT) {
+        aisle_waypoint_msg end = part_end(self, f);
+        end.clearance = float_below(aisle_space_piece_clearance(space, last, &end, &self->units));
+        bool near = (double)end.clearance < space->vehicle->creep_clearance;
+        if (rule == KEEP || !near) {
+            append(self, &end);
+            self->done = f;
+            self->depth--;
         } else {
-            w[kept++] = w[i];
+            rule = CUT;
         }
     }
-    self->path->num_waypoints = (int16_t)kept;
+    if (rule == CUT) {
+        self->ends[self->depth++] = 0.5 * (self->done + f);
+    }
+    if (self->depth == 0U) {
+        take_piece(self, self->at + 1U);
+    }
+}
+
+aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path) {
+    self->request = *request;
+    self->path = path;
+    self->units = 0;
+    aisle_curve curve = {.w = self->raw, .capacity = AISLE_PATH_MAX_WAYPOINTS};
+    const aisle_goal_msg *start = request->start;
+    double theta = aisle_goal_heading_is_free(start) ? first_heading(self) : start->theta;
+    aisle_curve_begin(&curve, (aisle_pose2){start->x, start->y, theta});
+    for (uint32_t i = 0; i < request->leg_count; i++) {
+        self->leg = i;
+        lay_leg(self, &curve, i);
+    }
+    self->raw_count = curve.n;
+    if (curve.overflow) {
+        return AISLE_ERR_CAPACITY;
+    }
+    self->longest = aisle_max(AISLE_COMPOSE_PIECE, raw_length(self) / (double)AISLE_COMPOSE_PIECES);
+    self->leg = 0;
+    self->value = 0.0;
+    self->path->waypoints[0] = self->raw[0];
+    self->path->num_waypoints = 1;
+    take_piece(self, 1);
+    return AISLE_OK;
 }
 
 static void set_dwell(aisle_compose *self) {
@@ -208,29 +299,9 @@ static void set_dwell(aisle_compose *self) {
     }
 }
 
-// Writes each leg's measured cost: what the comparison of seed and swarm goes by.
-static void value_legs(aisle_compose *self) {
-    const aisle_path_msg *path = self->path;
-    uint32_t leg = 0;
-    double value = 0.0;
-    for (uint32_t i = 0; i < (uint32_t)path->num_waypoints; i++) {
-        const aisle_waypoint_msg *to = &path->waypoints[i];
-        double length = i > 0U ? aisle_piece_length(to - 1, to) : 0.0;
-        value +=
-            length * aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
-        if ((to->flags & AISLE_WAYPOINT_GOAL) != 0 && leg < self->request.leg_count) {
-            aisle_leg *at = &self->request.legs[leg++];
-            *(at->use_swarm ? &at->swarm_value : &at->seed_value) = value;
-            value = 0.0;
-        }
-    }
-}
-
 static aisle_status finish(aisle_compose *self) {
     aisle_path_msg *path = self->path;
     const aisle_space *space = self->request.space;
-    value_legs(self);
-    join_pieces(self);
     set_dwell(self);
     aisle_profile_sum sum;
     aisle_status st = aisle_profile_fill(space->vehicle, space->layout, path->waypoints, (uint32_t)path->num_waypoints,
@@ -251,23 +322,15 @@ static aisle_status finish(aisle_compose *self) {
     return AISLE_OK;
 }
 
-// Largest float not above x: a clearance is told rather too small.
-static float float_below(double x) {
-    float f = (float)(x * (1.0 - 1e-7));
-    return f > 0.0F ? f : 0.0F;
-}
-
 aisle_status aisle_compose_step(aisle_compose *self, uint32_t units, uint32_t *spent) {
     aisle_status st = AISLE_BUSY;
-    aisle_waypoint_msg *w = self->path->waypoints;
-    const aisle_space *space = self->request.space;
-    while (self->at < (uint32_t)self->path->num_waypoints && self->units < units) {
-        double clearance = aisle_space_piece_clearance(space, &w[self->at - 1U], &w[self->at], &self->units);
-        w[self->at++].clearance = float_below(clearance);
+    while (self->at < self->raw_count && self->units < units) {
+        step_part(self);
     }
-    if (self->at >= (uint32_t)self->path->num_waypoints) {
+    if (self->at >= self->raw_count) {
+        aisle_waypoint_msg *w = self->path->waypoints;
         aisle_pose2 start = {w[0].x, w[0].y, w[0].theta};
-        w[0].clearance = float_below(aisle_space_gap(space, start, AISLE_CLEARANCE_CAP, NULL));
+        w[0].clearance = float_below(aisle_space_gap(self->request.space, start, AISLE_CLEARANCE_CAP, NULL));
         st = finish(self);
     }
     *spent += self->units;

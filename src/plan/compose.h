@@ -1,10 +1,11 @@
 // compose.h - from planned legs to a complete path_t: pieces, clearances, speeds, sums. Level 4.
 //
 // Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines
-// with arcs); a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are cut to
-// AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and zones
-// follow the place; straight neighbours of the same speed class are joined again. Clearance: space.h's lower bound.
-// Speeds: profile.h.
+// with arcs); a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are halved
+// down to AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and
+// zones follow the place; straight ones that keep the creep clearance only down to AISLE_COMPOSE_JOIN, and those that
+// keep it nowhere only to half of that, unless the objective is SAFEST: no other asks by how much. Straight neighbours
+// of the same speed class are joined again. Clearance: space.h's lower bound. Speeds: profile.h.
 // Memory: the caller's buffers. Time: O(waypoints * obstacles near), sliced by piece.
 #ifndef AISLE_PLAN_COMPOSE_H
 #define AISLE_PLAN_COMPOSE_H
@@ -17,6 +18,7 @@
 #define AISLE_COMPOSE_PIECE 0.5   // m
 #define AISLE_COMPOSE_PIECES 400U // a path is cut into about so many pieces at most
 #define AISLE_COMPOSE_JOIN 2.0    // m, longest joined piece
+#define AISLE_COMPOSE_DEPTH 24U   // of halvings of one piece
 
 typedef struct aisle_compose_request {
     const aisle_space *space;
@@ -36,8 +38,14 @@ typedef struct aisle_compose {
     aisle_waypoint_msg *raw; // [AISLE_PATH_MAX_WAYPOINTS]
     float *dwell;            // [AISLE_PATH_MAX_WAYPOINTS]
     aisle_spline *spline;
-    aisle_spline_sample *sample; // [AISLE_SWARM_SAMPLES_MAX]
-    uint32_t raw_count, at;
+    aisle_spline_sample *sample;      // [AISLE_SWARM_SAMPLES_MAX]
+    uint32_t raw_count, at;           // at: the piece in hand ends there
+    double done;                      // share of it that is in the path
+    double ends[AISLE_COMPOSE_DEPTH]; // of its parts not yet in the path, the next on top
+    uint32_t depth;                   // of ends
+    double longest;                   // m, a part near obstacles
+    uint32_t leg;                     // being laid, later: whose value is being summed up
+    double value;
     uint32_t units;
 } aisle_compose;
 
@@ -46,7 +54,8 @@ void aisle_compose_carve(aisle_compose *self, aisle_arena *arena);
 // Begins: lays the geometry. AISLE_ERR_CAPACITY: more waypoints than a path_t holds.
 aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path);
 
-// Measures clearances; at the end fills speeds and sums. AISLE_BUSY, then AISLE_OK; AISLE_ERR_ARG: degenerate geometry.
+// Cuts pieces and measures clearances (a unit for each exact gap); at the end fills speeds and sums (a unit a waypoint).
+// AISLE_BUSY, then AISLE_OK; AISLE_ERR_ARG: degenerate geometry.
 aisle_status aisle_compose_step(aisle_compose *self, uint32_t units, uint32_t *spent);
 
 // Any heading will do?

@@ -45,9 +45,8 @@ void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, con
     if (place != NULL) {
         head->waypoints[0] = (aisle_waypoint_msg){.x = place->x, .y = place->y};
     }
-    head->certificate = (int32_t)aisle_path_certificate(head);
     size_t size = 0;
-    aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, head, self->refusal[kind], AISLE_REFUSAL_BYTES, &size);
+    aisle_status st = aisle_path_encode(head, self->refusal[kind], AISLE_REFUSAL_BYTES, &size);
     AISLE_ASSERT(st == AISLE_OK);
     queue(self, kind, self->refusal[kind], size, NULL);
     self->counters[AISLE_COUNTER_NO_PATHS]++;

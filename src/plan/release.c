@@ -33,7 +33,7 @@ uint32_t aisle_path_certificate(const aisle_path_msg *path) {
     return crc;
 }
 
-// ---- crc of what is proved
+// ---- places in the bytes
 
 static size_t offset_of(const char *name) {
     size_t offset = 0;
@@ -41,6 +41,25 @@ static size_t offset_of(const char *name) {
     AISLE_ASSERT(known);
     return offset;
 }
+
+// The seven revisions and ids follow one another in path_t, and the waypoints are all that comes behind their number.
+uint32_t aisle_release_certificate(const uint8_t *bytes, size_t size) {
+    const size_t ids = offset_of("path_revision"), ids_end = offset_of("pose_utime");
+    const size_t waypoints = offset_of("num_waypoints") + 2U;
+    AISLE_ASSERT(ids_end - ids == 7U * 4U && size >= waypoints);
+    return aisle_crc32(aisle_crc32(0, bytes + waypoints, size - waypoints), bytes + ids, ids_end - ids);
+}
+
+aisle_status aisle_path_encode(aisle_path_msg *path, uint8_t *bytes, size_t capacity, size_t *size) {
+    aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, path, bytes, capacity, size);
+    if (st == AISLE_OK) {
+        path->certificate = (int32_t)aisle_release_certificate(bytes, *size);
+        aisle_msg_put_int32(bytes + offset_of("certificate"), path->certificate);
+    }
+    return st;
+}
+
+// ---- crc of what is proved
 
 bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc) {
     static const uint8_t zeros[8] = {0};

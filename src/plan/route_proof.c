@@ -28,8 +28,7 @@ static void seal(aisle_route *self) {
     path->work_units = (int32_t)self->spent;
     float bound = (float)(length_bound(self) * (1.0 - 1e-6));
     path->length_bound = bound < path->length ? bound : path->length;
-    path->certificate = (int32_t)aisle_path_certificate(path);
-    aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, path, self->trial->bytes, AISLE_ROUTE_BYTES, &self->trial->size);
+    aisle_status st = aisle_path_encode(path, self->trial->bytes, AISLE_ROUTE_BYTES, &self->trial->size);
     AISLE_ASSERT(st == AISLE_OK);
 }
 

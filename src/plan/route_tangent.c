@@ -57,8 +57,10 @@ static void after_bound(aisle_route *self, bool found) {
 aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     uint32_t left = left_for_tangent(self);
     uint32_t before = self->spent;
+    uint32_t expanded = self->tangent.expansions;
     aisle_status st = aisle_tangent_step(&self->tangent, units < left ? units : left, &self->spent);
     self->tangent_units += self->spent - before;
+    self->nodes += (int64_t)self->tangent.expansions - (int64_t)expanded;
     if (st == AISLE_BUSY && left_for_tangent(self) > 0U) {
         return AISLE_BUSY;
     }

@@ -8,14 +8,17 @@
 #include <math.h>
 #include <string.h>
 
-#define STRAY_STEP 1e-3     // m, of piece_clearance's subdivision: from straight ways
-#define OVERREACH_STEP 4e-3 // m, and of the hull beyond the sweep of a body that turns
-#define SUBDIVISIONS_MAX 4096U
+#define STRAY_STEP 1e-3                   // m, of piece_clearance: from straight ways
+#define STRAY_STEP_FREE 1e-4              // m, of piece_free
+#define OVERREACH_STEP 4e-3               // m, and of the hull beyond the sweep of a body that turns
+#define PARTS_DEPTH_MAX 13U               // halvings of a piece, at most 4096 parts
 #define HALF_DIAGONAL 0.70710678118654752 // of a square of side 1
 
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
     self->cell_free = (uint64_t *)aisle_arena_take(arena, (size_t)cells / 64U + 1U, sizeof(uint64_t));
     self->cells = cells;
+    self->known_from = cells / 64U + 1U; // an arena's memory is 0
+    self->known_end = 0;
 }
 
 // The lever, and discs of equal radius along the body's x axis that together hold the footprint's box.
@@ -56,9 +59,23 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
 }
 
 void aisle_space_forget(aisle_space *self) {
-    uint32_t cells = self->grid->lattice.w * self->grid->lattice.h;
-    AISLE_ASSERT(cells <= self->cells);
-    memset(self->cell_free, 0, ((size_t)cells / 64U + 1U) * sizeof(uint64_t));
+    AISLE_ASSERT(self->grid->lattice.w * self->grid->lattice.h <= self->cells);
+    if (self->known_from < self->known_end) {
+        memset(self->cell_free + self->known_from, 0, (self->known_end - self->known_from) * sizeof(uint64_t));
+    }
+    self->known_from = self->cells / 64U + 1U;
+    self->known_end = 0;
+}
+
+static bool is_known_free(const aisle_space *self, uint32_t cell) {
+    return (self->cell_free[cell / 64U] >> (cell % 64U) & 1U) != 0U;
+}
+
+static void note_free(aisle_space *self, uint32_t cell) {
+    const uint32_t word = cell / 64U;
+    self->cell_free[word] |= 1ULL << (cell % 64U);
+    self->known_from = word < self->known_from ? word : self->known_from;
+    self->known_end = word >= self->known_end ? word + 1U : self->known_end;
 }
 
 // Is the disc of radius r about the way from a to b free? Exact.
@@ -79,8 +96,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
     if (centre_gap + self->beyond < need) {
         return false;
     }
-    uint64_t bit = 1ULL << (cell % 64U);
-    if ((self->cell_free[cell / 64U] & bit) != 0U) {
+    if (is_known_free(self, cell)) {
         return true;
     }
     *units += 1U;
@@ -88,7 +104,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
     if (!capsule_free(self, centre, centre, need)) {
         return false;
     }
-    self->cell_free[cell / 64U] |= bit;
+    note_free(self, cell);
     return true;
 }
 
@@ -139,14 +155,13 @@ bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint
     if (centre_gap + self->beyond + side * HALF_DIAGONAL < reach) {
         return false;
     }
-    uint64_t bit = 1ULL << (cell % 64U);
-    if ((self->cell_free[cell / 64U] & bit) != 0U) {
+    if (is_known_free(self, cell)) {
         return true;
     }
     if (!holds_exactly(self, aisle_lattice_centre(&self->grid->lattice, cell), reach, depth, units)) {
         return false;
     }
-    self->cell_free[cell / 64U] |= bit;
+    note_free(self, cell);
     return true;
 }
 
@@ -289,38 +304,119 @@ double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p) {
     return (cells - 0.5) * lattice->res - self->vehicle->inner_radius;
 }
 
-// Least gap over the part [f0, f1] of a piece, given how far body points may stray from the hull of its ends.
-static double part_clearance(const aisle_space *self, aisle_pose2 from, aisle_pose2 to, double stray, double cap) {
+// ---- clearance of pieces
+
+typedef struct piece {
+    const aisle_waypoint_msg *from, *to;
+    double length; // m
+    double stray;  // m, of any body point from the straight way between its ends, over the whole piece
+    double beyond; // m, what the hull of the body at both ends reaches beyond the sweep, likewise
+    double least;  // m, no smaller gap is known to lie on it
+    double most;   // m, the least gap of a placement looked at: the answer is not above it
+} piece;
+
+static aisle_pose2 pose_at(const piece *p, double f) {
+    return f > 0.0 ? aisle_piece_at(p->from, p->to, f) : (aisle_pose2){p->from->x, p->from->y, p->from->theta};
+}
+
+// Gap of the body's hull over the part [f0, f1], less its stray: a lower bound, at most `cap`.
+static double part_clearance(const aisle_space *self, const piece *p, double f0, double f1, double cap) {
     aisle_vec2 both[2 * AISLE_SHAPE_VERTICES_MAX];
     aisle_vec2 hull[2 * AISLE_SHAPE_VERTICES_MAX];
     const aisle_vehicle *vehicle = self->vehicle;
-    aisle_convex_place(vehicle->footprint, vehicle->n, from, both);
-    aisle_convex_place(vehicle->footprint, vehicle->n, to, both + vehicle->n);
-    aisle_convex swept = {hull, aisle_convex_hull(both, 2U * vehicle->n, hull), vehicle->radius};
-    double gap = aisle_layout_gap(self->layout, &swept, cap + stray, NULL);
-    return aisle_max(gap - stray, 0.0);
+    const aisle_pose2 from = pose_at(p, f0), to = pose_at(p, f1);
+    const double stray = p->stray * (f1 - f0) * (f1 - f0);
+    aisle_convex swept = {hull, 2U, vehicle->radius};
+    if (aisle_vehicle_is_disc(vehicle)) {
+        hull[0] = aisle_vec2_of(from.x, from.y);
+        hull[1] = aisle_vec2_of(to.x, to.y);
+    } else {
+        aisle_convex_place(vehicle->footprint, vehicle->n, from, both);
+        aisle_convex_place(vehicle->footprint, vehicle->n, to, both + vehicle->n);
+        swept.n = aisle_convex_hull(both, 2U * vehicle->n, hull);
+    }
+    return aisle_max(aisle_layout_gap(self->layout, &swept, cap + stray, NULL) - stray, 0.0);
+}
+
+static bool is_fine(const piece *p, double size, double stray_step) {
+    return p->stray * size * size <= stray_step && p->beyond * size <= OVERREACH_STEP;
+}
+
+static piece piece_between(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                           double cap) {
+    const double length = aisle_piece_length(from, to), turn = aisle_piece_turn(from, to);
+    return (piece){.from = from,
+                   .to = to,
+                   .length = length,
+                   .stray = 0.125 * (fabs((double)to->curvature) * length * length + self->lever * turn * turn),
+                   .beyond = 0.5 * self->lever * fabs(turn),
+                   .least = cap,
+                   .most = cap};
+}
+
+// Does the field alone say that the body keeps `gap` all along?
+static bool is_known_clear(const aisle_space *self, const piece *p, double gap) {
+    const aisle_pose2 middle = pose_at(p, 0.5);
+    const double around = aisle_grid_gap_lower(self->grid, aisle_vec2_of(middle.x, middle.y));
+    return around - self->vehicle->outer_radius - 0.5 * p->length >= gap;
+}
+
+// Branch and bound, halves in order: a part whose lower bound is not below what is known already, or so near to the gap
+// of a true placement that nothing more is to be learnt, is not cut.
+static double least_over_parts(const aisle_space *self, piece *p, uint32_t *units) {
+    double f0 = 0.0, ends[PARTS_DEPTH_MAX]; // of the parts ahead, the next on top
+    uint32_t depth = 1;
+    const double spare = STRAY_STEP + (p->beyond > 0.0 ? OVERREACH_STEP : 0.0);
+    ends[0] = 1.0;
+    while (depth > 0U) {
+        const double f1 = ends[depth - 1U];
+        const double gap = part_clearance(self, p, f0, f1, p->least);
+        *units += 1U;
+        if (gap >= p->least || gap >= p->most - spare || depth == PARTS_DEPTH_MAX || is_fine(p, f1 - f0, STRAY_STEP)) {
+            p->least = aisle_min(p->least, gap);
+            f0 = f1;
+            depth--;
+            continue;
+        }
+        const double middle = 0.5 * (f0 + f1);
+        p->most = aisle_min(p->most, aisle_space_gap(self, pose_at(p, middle), p->most, NULL));
+        *units += 1U;
+        ends[depth++] = middle;
+    }
+    return p->least;
 }
 
 double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
                                    const aisle_waypoint_msg *to, uint32_t *units) {
-    double length = aisle_piece_length(from, to);
-    double turn = aisle_piece_turn(from, to);
-    aisle_pose2 middle = aisle_piece_at(from, to, 0.5);
-    double around = aisle_grid_gap_lower(self->grid, aisle_vec2_of(middle.x, middle.y));
+    piece p = piece_between(self, from, to, AISLE_CLEARANCE_CAP);
     *units += 1U;
-    if (around - self->vehicle->outer_radius - 0.5 * length >= AISLE_CLEARANCE_CAP) {
-        return AISLE_CLEARANCE_CAP;
+    return is_known_clear(self, &p, AISLE_CLEARANCE_CAP) ? AISLE_CLEARANCE_CAP : least_over_parts(self, &p, units);
+}
+
+bool aisle_space_piece_free(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                            double need, uint32_t *units) {
+    const piece p = piece_between(self, from, to, need);
+    double f0 = 0.0, ends[PARTS_DEPTH_MAX];
+    uint32_t depth = 1;
+    ends[0] = 1.0;
+    *units += 1U;
+    if (is_known_clear(self, &p, need)) {
+        return true;
     }
-    double stray = 0.125 * (fabs((double)to->curvature) * length * length + self->lever * turn * turn);
-    double wanted = floor(aisle_max(sqrt(stray / STRAY_STEP), 0.5 * self->lever * fabs(turn) / OVERREACH_STEP)) + 1.0;
-    uint32_t parts = wanted < (double)SUBDIVISIONS_MAX ? (uint32_t)wanted : SUBDIVISIONS_MAX;
-    double clearance = AISLE_CLEARANCE_CAP;
-    aisle_pose2 begin = {from->x, from->y, from->theta};
-    for (uint32_t i = 1; i <= parts; i++) {
-        aisle_pose2 end = aisle_piece_at(from, to, (double)i / (double)parts);
-        clearance = part_clearance(self, begin, end, stray / ((double)parts * (double)parts), clearance);
-        begin = end;
+    while (depth > 0U) {
+        const double f1 = ends[depth - 1U], middle = 0.5 * (f0 + f1);
         *units += 1U;
+        if (part_clearance(self, &p, f0, f1, need) >= need * (1.0 - 1e-12)) { // it has gone up and down by the stray
+            f0 = f1;
+            depth--;
+            continue;
+        }
+        *units += 1U;
+        if (depth == PARTS_DEPTH_MAX || is_fine(&p, f1 - f0, STRAY_STEP_FREE) ||
+            aisle_space_gap(self, pose_at(&p, middle), need, NULL) < need) {
+            return false;
+        }
+        ends[depth++] = middle;
     }
-    return clearance;
+    return true;
 }

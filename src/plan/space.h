@@ -30,8 +30,9 @@ typedef struct aisle_space {
     double reach;        // FREE_TURN: outer radius + keep; ALONG: inner radius + keep (necessary, not sufficient)
     uint64_t *cell_free; // [cells / 64 + 1] bits: an exact test of this cell said yes
     uint32_t cells;
-    uint32_t far_field;   // a cell of this field value or more is far: nothing there depends on the clearance
-    double far_clearance; // m, what is told of far places
+    uint32_t known_from, known_end; // words of cell_free outside [known_from, known_end) are 0
+    uint32_t far_field;             // a cell of this field value or more is far: nothing there depends on the clearance
+    double far_clearance;           // m, what is told of far places
     double beyond; // m, what an obstacle may lie beyond the centre of its occupied cell; negative where cells are solid
     double lever;  // m, farthest footprint point from the origin, its rounding left out
     // ALONG: discs on the body's x axis that hold the footprint, for a quick yes
@@ -40,7 +41,7 @@ typedef struct aisle_space {
 
 void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells);
 
-// Turns to a layout in force and a vehicle. O(cells / 64).
+// Turns to a layout in force and a vehicle. O(words of cell_free that were written since the last time).
 void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        aisle_space_mode mode);
 
@@ -68,7 +69,7 @@ bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *unit
 // yes is
 // remembered until forget(), so reach and depth stay the same meanwhile.
 bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units);
-void aisle_space_forget(aisle_space *self); // O(cells / 64)
+void aisle_space_forget(aisle_space *self); // O(words written)
 
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.
 bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
@@ -86,8 +87,13 @@ double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
 // Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at
 // most 2 mm below the truth for discs and straight pieces, 6 mm where a polygon turns (the hull of two placements
-// reaches beyond the sweep by up to half the turn times the lever, so turning pieces are cut finer). O(turn * obstacles
-// near).
+// reaches beyond the sweep by up to half the turn times the lever). The piece is halved only where the bound of a part
+// may lower the answer. O(parts * obstacles near), a unit for each exact gap.
 double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
                                    const aisle_waypoint_msg *to, uint32_t *units);
+
+// Is that gap `need` (m, > 0) or more? "Yes" is sure; "no" may be wrong within 0.2 mm of need for discs and straight
+// pieces, 5 mm where a polygon turns. Ends with the first placement that is too near. Units as above.
+bool aisle_space_piece_free(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                            double need, uint32_t *units);
 #endif

@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-#define TURN_MIN 1e-3 // rad, of a step along an arc that touches something
+#define BUCKET_TOUCH 1e-6 // m, what rounding may add to a bucket's side
+#define TURN_MIN 1e-3     // rad, of a step along an arc that touches something
 
 typedef struct straight { // the way of a disc from p on
     aisle_vec2 p, q, d;
@@ -73,18 +74,19 @@ bool aisle_tangent_line_free(aisle_tangent *self, double radius, aisle_vec2 p, a
     if (way.length > 0.0) {
         way.d = aisle_vec2_scale(aisle_vec2_sub(q, p), 1.0 / way.length);
     }
+    double reach = radius + BUCKET_TOUCH;
     uint32_t stamp = aisle_tangent_stamp(self);
     aisle_aabb box = {{aisle_min(p.x, q.x), aisle_min(p.y, q.y)}, {aisle_max(p.x, q.x), aisle_max(p.y, q.y)}};
-    aisle_bucket_range all = aisle_layout_index_range(wide, aisle_aabb_grow(box, radius));
+    aisle_bucket_range all = aisle_layout_index_range(wide, aisle_aabb_grow(box, reach));
     double slope = fabs(way.d.x) > 1e-9 ? way.d.y / way.d.x : 0.0;
     bool steep = fabs(way.d.x) <= 1e-9;
     for (uint32_t k = all.x0; k <= all.x1; k++) {
         uint32_t x = way.d.x >= 0.0 ? k : all.x0 + all.x1 - k;
-        double x0 = aisle_clamp(wide->lo.x + x * wide->side - radius, box.lo.x, box.hi.x);
-        double x1 = aisle_clamp(wide->lo.x + (x + 1U) * wide->side + radius, box.lo.x, box.hi.x);
+        double x0 = aisle_clamp(wide->lo.x + x * wide->side - reach, box.lo.x, box.hi.x);
+        double x1 = aisle_clamp(wide->lo.x + (x + 1U) * wide->side + reach, box.lo.x, box.hi.x);
         double y0 = steep ? box.lo.y : p.y + (x0 - p.x) * slope;
         double y1 = steep ? box.hi.y : p.y + (x1 - p.x) * slope;
-        aisle_aabb part = {{x0, aisle_min(y0, y1) - radius}, {x1, aisle_max(y0, y1) + radius}};
+        aisle_aabb part = {{x0, aisle_min(y0, y1) - reach}, {x1, aisle_max(y0, y1) + reach}};
         aisle_bucket_range rows = aisle_layout_index_range(wide, part);
         for (uint32_t y = rows.y0; y <= rows.y1; y++) {
             if (!is_bucket_clear(self, &way, y * wide->nx + x, stamp)) {

@@ -57,7 +57,7 @@ static bool certificate_is_right(const aisle_verify *self) {
     const aisle_path_msg *path = self->path;
     return path->map_id == self->map_id && path->map_revision == self->map_revision &&
            path->vehicle_revision == self->request.vehicle->revision &&
-           (uint32_t)path->certificate == aisle_path_certificate(path);
+           (uint32_t)path->certificate == aisle_release_certificate(self->request.bytes, self->request.size);
 }
 
 static aisle_verify_fault header_fault(aisle_verify *self) {

@@ -2,7 +2,7 @@
 //
 // Works on the bytes of a path_t, in double, from the primitive curve its waypoints define, and shares no code with the
 // search: its own geometry of pieces, obstacles straight from the layout's polygons, scan bits and bounds (not the
-// distance field), narrow phase by libccd (world/collide.h). Files: verify_piece.c (curve), verify_limits.c (what the
+// distance field), narrow phase by separating axes, and by libccd (world/collide.h) for all they do not part. Files: verify_piece.c (curve), verify_limits.c (what the
 // vehicle can do), verify_motion.c (collision proof), verify.c (order of it all), release.c (the way out).
 //
 // Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal within
@@ -18,7 +18,7 @@
 // the hull of the footprint at both end poses, grown by margin + d + AISLE_VERIFY_EPSILON, covers the whole interval.
 // If that
 // hull is free the interval is proved; else it is halved; below 1 mm of travel of every body point it is a collision.
-// Straight pieces without turn have d = 0: one exact test. Intervals above 1 m are halved unseen so that boxes stay
+// Straight pieces without turn have d = 0: one exact test. Intervals above 2 m are halved unseen so that boxes stay
 // small.
 // So a path is refused only if the footprint comes closer than margin + 2e-6 m, or, where it turns, margin + 0.6 mm:
 // a hull
@@ -173,4 +173,7 @@ aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t s
 // goal_list_revision, map_id, map_revision,
 // vehicle_revision as 4 big-endian bytes each. The path's `certificate`.
 uint32_t aisle_path_certificate(const aisle_path_msg *path);
+
+// Encodes a path_t with its certificate, which is written to *path, too. Answers as aisle_msg_encode().
+aisle_status aisle_path_encode(aisle_path_msg *path, uint8_t *bytes, size_t capacity, size_t *size);
 #endif

@@ -3,14 +3,17 @@
 #include "base/angle.h"
 #include "base/check.h"
 
-#define TRAVEL_MIN 1e-3 // m of every body point, below which no interval is halved
-#define LENGTH_MAX 1.0  // m of an interval looked at
+#define TRAVEL_MIN 1e-3  // m of every body point, below which no interval is halved
+#define TRAVEL_FINE 0.02 // m, above which a bent interval is not worth libccd
+#define LENGTH_MAX 2.0   // m of an interval looked at
+#define APART_SPARE 1e-9 // m, and axes shorter than 1e-150 part nothing since their squares are 0
 
 typedef struct sweep { // the footprint at both ends of an interval, and how far the body is to be thought around their
                        // hull
     aisle_vec2 a[AISLE_SHAPE_VERTICES_MAX], b[AISLE_SHAPE_VERTICES_MAX];
     uint32_t n;
     double reach;    // m: rounding, growth, sagittas, epsilon
+    bool is_coarse;  // it will be halved if it is not proved at once
     aisle_aabb core; // around a and b
     aisle_aabb box;  // around the body
     aisle_vec2 hull[2 * AISLE_SHAPE_VERTICES_MAX];
@@ -22,8 +25,10 @@ typedef struct sweep { // the footprint at both ends of an interval, and how far
 static void place(const aisle_verify *self, double u, aisle_vec2 *out, aisle_aabb *core) {
     const aisle_vehicle *vehicle = self->request.vehicle;
     aisle_vec2 origin = aisle_verify_piece_origin(&self->piece, u);
-    double sine, cosine;
-    aisle_sincos(self->piece.theta + u * self->motion.turn, &sine, &cosine);
+    double sine = 0.0, cosine = 1.0;
+    if (self->lever > 0.0) { // else every point is the origin
+        aisle_sincos(self->piece.theta + u * self->motion.turn, &sine, &cosine);
+    }
     for (uint32_t i = 0; i < vehicle->n; i++) {
         aisle_vec2 v = vehicle->footprint[i];
         out[i] = aisle_vec2_of(origin.x + cosine * v.x - sine * v.y, origin.y + sine * v.x + cosine * v.y);
@@ -43,6 +48,7 @@ static void sweep_over(const aisle_verify *self, double lo, double hi, double gr
     out->n = self->request.vehicle->n;
     out->hull_n = 0;
     out->reach = self->request.vehicle->radius + growth + sagitta(self, hi - lo) + AISLE_VERIFY_EPSILON;
+    out->is_coarse = false;
     out->core = (aisle_aabb){{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
     place(self, lo, out->a, &out->core);
     place(self, hi, out->b, &out->core);
@@ -101,7 +107,74 @@ static void make_hull(sweep *self) {
 
 // ---- obstacles
 
+typedef struct extent { // along an axis, times the axis's length
+    double lo, hi;
+} extent;
+
+static extent extent_of(const aisle_vec2 *v, uint32_t n, aisle_vec2 origin, aisle_vec2 axis) {
+    extent e = {DBL_MAX, -DBL_MAX};
+    for (uint32_t i = 0; i < n; i++) {
+        double at = aisle_vec2_dot(aisle_vec2_sub(v[i], origin), axis);
+        e.lo = aisle_min(e.lo, at);
+        e.hi = aisle_max(e.hi, at);
+    }
+    return e;
+}
+
+// Does a strip across `axis`, wider than the body's reach, lie between the body's points and the obstacle's? Then so it
+// does between their hulls. Both are measured, so it does not matter where the axis comes from; APART_SPARE is more than
+// what the products round at coordinates within AISLE_SHAPE_COORD_MAX. An axis of no length parts nothing.
+static bool is_apart_along(const sweep *s, const aisle_vec2 *v, uint32_t n, aisle_vec2 axis) {
+    extent a = extent_of(s->a, s->n, s->a[0], axis), b = extent_of(s->b, s->n, s->a[0], axis);
+    extent obstacle = extent_of(v, n, s->a[0], axis);
+    double gap = aisle_max(obstacle.lo - aisle_max(a.hi, b.hi), aisle_min(a.lo, b.lo) - obstacle.hi);
+    double wanted = s->reach + APART_SPARE;
+    return gap > 0.0 && gap * gap > wanted * wanted * aisle_vec2_dot(axis, axis);
+}
+
+// From the body's point to the obstacle's that is nearest to it, among their given points.
+static aisle_vec2 nearest_way(const sweep *s, const aisle_vec2 *v, uint32_t n) {
+    aisle_vec2 best = {0.0, 0.0};
+    double least = DBL_MAX;
+    for (uint32_t i = 0; i < 2 * s->n; i++) {
+        aisle_vec2 p = i < s->n ? s->a[i] : s->b[i - s->n];
+        for (uint32_t k = 0; k < n; k++) {
+            aisle_vec2 way = aisle_vec2_sub(v[k], p);
+            double square = aisle_vec2_dot(way, way);
+            best = square < least ? way : best;
+            least = aisle_min(square, least);
+        }
+    }
+    return best;
+}
+
+static bool is_apart_across_edges(const sweep *s, const aisle_vec2 *v, uint32_t n, const aisle_vec2 *of,
+                                  uint32_t count) {
+    for (uint32_t i = 0; count > 1 && i < count; i++) {
+        aisle_vec2 edge = aisle_vec2_sub(of[i + 1 < count ? i + 1 : 0], of[i]);
+        if (is_apart_along(s, v, n, aisle_vec2_of(edge.y, -edge.x))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A cheap proof that they do not touch, for most that do not: across the way driven, along the way between the nearest
+// points, across the edges of either. For a disc these are all the axes there are.
+static bool is_apart(const sweep *s, const aisle_vec2 *v, uint32_t n) {
+    aisle_vec2 way = aisle_vec2_sub(s->b[0], s->a[0]);
+    return is_apart_along(s, v, n, aisle_vec2_of(-way.y, way.x)) || is_apart_along(s, v, n, nearest_way(s, v, n)) ||
+           is_apart_across_edges(s, v, n, v, n) || is_apart_across_edges(s, v, n, s->a, s->n) ||
+           is_apart_across_edges(s, v, n, s->b, s->n);
+}
+
 static bool touches(aisle_verify *self, const sweep *s, const aisle_vec2 *v, uint32_t n) {
+    if (is_apart(s, v, n)) {
+        return false;
+    }
+    if (s->is_coarse) {
+        return true; // or so near that the halves will tell more than a judge of the whole
+    }
     aisle_collide_body body = {.a = s->a, .b = s->b, .n = s->n, .radius = s->reach};
     aisle_collide_body obstacle = {.a = v, .b = NULL, .n = n, .radius = 0.0};
     return aisle_collide(&body, &obstacle, &self->collide);
@@ -318,6 +391,7 @@ aisle_status aisle_verify_motion_step(aisle_verify *self) {
         return AISLE_BUSY;
     }
     sweep_over(self, lo, hi, motion->growth, &s);
+    s.is_coarse = travel > TRAVEL_FINE && sagitta(self, hi - lo) > 0.0;
     if (is_free(self, &s, &id)) {
         return advance(self);
     }

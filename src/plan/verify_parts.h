@@ -50,4 +50,7 @@ aisle_status aisle_verify_motion_step(aisle_verify *self);
 // ---- release.c
 // crc of a path_t with the lease's two times and work_units taken as 0. False: too short for one.
 bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc);
+
+// aisle_path_certificate() of the path_t these valid bytes encode, without decoding it.
+uint32_t aisle_release_certificate(const uint8_t *bytes, size_t size);
 #endif

@@ -7,11 +7,11 @@
 
 // ---- the walk: from one run of scalars to the next
 
-typedef struct run {
-    const aisle_wire_field *field;
-    uint32_t offset; // in the C struct
-    uint32_t count;  // scalars, > 0
-    uint32_t width;  // bytes of each, on the wire and in the struct
+typedef struct run { // one field, or several of one kind that follow one another in the struct as on the wire
+    const aisle_wire_field *field; // the first
+    uint32_t offset;               // in the C struct
+    uint32_t count;                // scalars, > 0
+    uint32_t width;                // bytes of each, on the wire and in the struct
 } run;
 
 typedef struct frame { // an array of structs being walked, or one struct
@@ -59,6 +59,38 @@ static uint32_t width_of(uint8_t kind) {
     return widths[kind];
 }
 
+static bool is_plain(const aisle_wire_field *field) {
+    return field->slot == AISLE_WIRE_NO_SLOT && field->rows_slot == AISLE_WIRE_NO_SLOT;
+}
+
+// Takes in the fields behind that may be moved in one go: in messages of many small structs most of the time.
+static void lengthen(frame *top, run *out) {
+    const aisle_wire_field *fields = top->type->fields;
+    if (!is_plain(out->field)) {
+        return;
+    }
+    uint32_t end = out->offset + out->width * out->count - top->base; // in the present element
+    for (; top->field < top->type->num_fields; top->field++) {
+        const aisle_wire_field *next = &fields[top->field];
+        if (next->kind != out->field->kind || next->offset != end || !is_plain(next)) {
+            return;
+        }
+        out->count += next->each;
+        end += out->width * next->each;
+    }
+}
+
+// Name of the field that scalar `at` of a run belongs to.
+static const char *name_at(const run *what, uint32_t at) {
+    const aisle_wire_field *field = what->field;
+    if (is_plain(field)) {
+        for (; at >= field->each; field++) {
+            at -= field->each;
+        }
+    }
+    return field->name;
+}
+
 // Where a count lies ahead, the caller must have given its value to keep_count() before it asks for the next run.
 static bool next_run(walk *self, run *out) {
     while (self->depth > 0) {
@@ -74,6 +106,7 @@ static bool next_run(walk *self, run *out) {
         }
         if (field->kind != AISLE_WIRE_STRUCT) {
             *out = (run){field, top->base + field->offset, count, width_of(field->kind)};
+            lengthen(top, out);
             return true;
         }
         enter(self, field->nested, top->base + field->offset, count);
@@ -178,21 +211,21 @@ static bool blame(aisle_msg_fault *fault, aisle_msg_fault_kind kind, const char 
     return false;
 }
 
-// NaN and infinity are the values whose exponent bits are all set.
-static bool are_finite32(const uint8_t *at, uint32_t count) {
-    bool ok = true;
-    for (uint32_t i = 0; i < count; i++) {
-        ok = ok && (load32(at + 4U * i) & 0x7F800000U) != 0x7F800000U;
+// NaN and infinity are the values whose exponent bits are all set. Place of the first of them, or count.
+static uint32_t first_not_finite32(const uint8_t *at, uint32_t count) {
+    uint32_t i = 0;
+    while (i < count && (load32(at + 4U * i) & 0x7F800000U) != 0x7F800000U) {
+        i++;
     }
-    return ok;
+    return i;
 }
 
-static bool are_finite64(const uint8_t *at, uint32_t count) {
-    bool ok = true;
-    for (uint32_t i = 0; i < count; i++) {
-        ok = ok && (load32(at + 8U * i) & 0x7FF00000U) != 0x7FF00000U;
+static uint32_t first_not_finite64(const uint8_t *at, uint32_t count) {
+    uint32_t i = 0;
+    while (i < count && (load32(at + 8U * i) & 0x7FF00000U) != 0x7FF00000U) {
+        i++;
     }
-    return ok;
+    return i;
 }
 
 static int64_t count_at(const uint8_t *at, uint32_t width) {
@@ -216,7 +249,7 @@ static int64_t count_at(const uint8_t *at, uint32_t width) {
 static bool check_booleans(const uint8_t *at, const run *what, aisle_msg_fault *fault) {
     for (uint32_t i = 0; i < what->count; i++) {
         if (at[i] > 1) {
-            return blame(fault, AISLE_MSG_FAULT_BAD_BOOLEAN, what->field->name, count_at(at + i, 1));
+            return blame(fault, AISLE_MSG_FAULT_BAD_BOOLEAN, name_at(what, i), count_at(at + i, 1));
         }
     }
     return true;
@@ -235,17 +268,17 @@ static bool check_count(walk *at, const uint8_t *bytes, const run *what, aisle_m
 }
 
 static bool check_run(walk *at, const uint8_t *bytes, const run *what, aisle_msg_fault *fault) {
-    bool finite = true;
+    uint32_t finite = what->count;
     if (what->field->kind == AISLE_WIRE_FLOAT) {
-        finite = are_finite32(bytes, what->count);
+        finite = first_not_finite32(bytes, what->count);
     } else if (what->field->kind == AISLE_WIRE_DOUBLE) {
-        finite = are_finite64(bytes, what->count);
+        finite = first_not_finite64(bytes, what->count);
     } else if (what->field->kind == AISLE_WIRE_BOOLEAN) {
         return check_booleans(bytes, what, fault);
     } else if (what->field->slot != AISLE_WIRE_NO_SLOT) {
         return check_count(at, bytes, what, fault);
     }
-    return finite || blame(fault, AISLE_MSG_FAULT_NOT_FINITE, what->field->name, 0);
+    return finite == what->count || blame(fault, AISLE_MSG_FAULT_NOT_FINITE, name_at(what, finite), 0);
 }
 
 // ---- decoding
@@ -254,13 +287,28 @@ static bool is_type(aisle_msg_type type) {
     return (uint32_t)type < AISLE_MSG_COUNT;
 }
 
+// Only `left` bytes of a run are there. The fields that are whole are looked at first: the first fault is the one told.
+static bool blame_truncated(walk *at, const uint8_t *bytes, size_t left, const run *what, aisle_msg_fault *fault) {
+    run whole = *what;
+    whole.count = 0;
+    if (is_plain(what->field)) {
+        for (const aisle_wire_field *field = what->field; whole.count + field->each <= left / what->width; field++) {
+            whole.count += field->each;
+        }
+        if (!check_run(at, bytes, &whole, fault)) {
+            return false;
+        }
+    }
+    return blame(fault, AISLE_MSG_FAULT_TRUNCATED, name_at(what, whole.count), 0);
+}
+
 static bool check_body(aisle_msg_type type, const uint8_t *bytes, size_t size, aisle_msg_fault *fault) {
     walk at = {.depth = 0};
     run now;
     size_t done = 0;
     for (enter(&at, type, 0, 1); next_run(&at, &now); done += (size_t)now.width * now.count) {
         if (size - done < (size_t)now.width * now.count) {
-            return blame(fault, AISLE_MSG_FAULT_TRUNCATED, now.field->name, 0);
+            return blame_truncated(&at, bytes + done, size - done, &now, fault);
         }
         if (!check_run(&at, bytes + done, &now, fault)) {
             return false;

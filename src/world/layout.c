@@ -140,31 +140,50 @@ static void enter_bucket(aisle_layout_walk *walk) {
     walk->end = index->starts[bucket + 1U];
 }
 
+// Buckets pay off where they hold fewer entries than there are zones: looking at a zone's box is about half as much
+// work as entering a bucket.
+static bool is_list_shorter(const aisle_layout *self, aisle_bucket_range r) {
+    const uint64_t buckets = (uint64_t)(r.x1 - r.x0 + 1U) * (r.y1 - r.y0 + 1U);
+    return aisle_layout_held(self)->zone_count <= 2U * buckets;
+}
+
 aisle_layout_walk aisle_layout_walk_over(const aisle_layout *self, aisle_aabb box) {
     aisle_layout_walk walk = {.layout = self, .box = box, .by = 1}; // past by1: nothing to walk
-    if (self->index.nx > 0 && box.lo.x <= box.hi.x && box.lo.y <= box.hi.y) {
-        const aisle_bucket_range r = aisle_layout_index_range(&self->index, box);
-        walk.bx0 = walk.bx = r.x0;
-        walk.by0 = walk.by = r.y0;
-        walk.bx1 = r.x1;
-        walk.by1 = r.y1;
-        enter_bucket(&walk);
+    if (self->index.nx == 0 || !(box.lo.x <= box.hi.x && box.lo.y <= box.hi.y)) {
+        return walk;
     }
+    const aisle_bucket_range r = aisle_layout_index_range(&self->index, box);
+    if (is_list_shorter(self, r)) { // as one bucket that lists every zone
+        walk.by = 0;
+        walk.whole = true;
+        walk.end = aisle_layout_held(self)->zone_count;
+        return walk;
+    }
+    walk.bx0 = walk.bx = r.x0;
+    walk.by0 = walk.by = r.y0;
+    walk.bx1 = r.x1;
+    walk.by1 = r.y1;
+    enter_bucket(&walk);
     return walk;
 }
 
 // A zone lies in several buckets: it is reported in the first one that its range and the walk's have in common.
 static bool is_first_meeting(const aisle_layout_walk *walk, const aisle_zone *zone) {
-    const aisle_bucket_range r = aisle_layout_index_range(&walk->layout->index, zone->box);
-    return walk->bx == (r.x0 > walk->bx0 ? r.x0 : walk->bx0) && walk->by == (r.y0 > walk->by0 ? r.y0 : walk->by0);
+    if (walk->whole) {
+        return true;
+    }
+    uint32_t x0, y0;
+    aisle_layout_index_bucket(&walk->layout->index, zone->box.lo, &x0, &y0);
+    return walk->bx == (x0 > walk->bx0 ? x0 : walk->bx0) && walk->by == (y0 > walk->by0 ? y0 : walk->by0);
 }
 
 bool aisle_layout_walk_next(aisle_layout_walk *walk, const aisle_zone **zone) {
+    const aisle_zone *zones = aisle_layout_held(walk->layout)->zones;
+    const uint16_t *entries = walk->whole ? NULL : walk->layout->index.entries;
     while (walk->by <= walk->by1) {
         while (walk->at < walk->end) {
-            const uint32_t i = walk->layout->index.entries[walk->at];
+            const aisle_zone *candidate = &zones[entries == NULL ? walk->at : entries[walk->at]];
             walk->at++;
-            const aisle_zone *candidate = &aisle_layout_held(walk->layout)->zones[i];
             if (aisle_aabb_overlap(candidate->box, walk->box) && is_first_meeting(walk, candidate)) {
                 *zone = candidate;
                 return true;

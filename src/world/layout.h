@@ -155,12 +155,14 @@ static inline bool aisle_zone_is_obstacle(const aisle_zone *zone) {
     return zone->kind == AISLE_POLYGON_OBSTACLE || zone->kind == AISLE_POLYGON_KEEPOUT;
 }
 
-// Walks the zones whose box overlaps `box` (finite), each once, in no promised but a fixed order:
+// Walks the zones whose box overlaps `box` (finite), each once, in no promised but a fixed order: by the buckets the box
+// meets, or by the list of all zones where that is shorter. O(the lesser of zones and buckets, and entries met):
 //     for (aisle_layout_walk w = aisle_layout_walk_over(layout, box); aisle_layout_walk_next(&w, &zone);) ...
 typedef struct aisle_layout_walk {
     const aisle_layout *layout;
     aisle_aabb box;
     uint32_t bx0, by0, bx1, by1, bx, by, at, end;
+    bool whole; // at and end are places in the list of all zones
 } aisle_layout_walk;
 aisle_layout_walk aisle_layout_walk_over(const aisle_layout *self, aisle_aabb box);
 bool aisle_layout_walk_next(aisle_layout_walk *walk, const aisle_zone **zone);

@@ -25,20 +25,25 @@ aisle_aabb aisle_layout_blocks_box(const aisle_layout_blocks *self, uint32_t ind
                         {l->x0 + r->x1 * l->res, l->y0 + r->y1 * l->res}};
 }
 
-static uint32_t bucket_along(double offset, double side, uint32_t n) {
-    const double at = offset / side;
+static uint32_t bucket_along(double offset, double per_metre, uint32_t n) {
+    const double at = offset * per_metre;
     if (!(at > 0.0)) {
         return 0;
     }
     return at < (double)n ? (uint32_t)at : n - 1U;
 }
 
-aisle_bucket_range aisle_layout_index_range(const aisle_layout_index *self, aisle_aabb box) {
+void aisle_layout_index_bucket(const aisle_layout_index *self, aisle_vec2 p, uint32_t *x, uint32_t *y) {
     AISLE_ASSERT(self->nx > 0);
-    return (aisle_bucket_range){bucket_along(box.lo.x - self->lo.x, self->side, self->nx),
-                                bucket_along(box.lo.y - self->lo.y, self->side, self->ny),
-                                bucket_along(box.hi.x - self->lo.x, self->side, self->nx),
-                                bucket_along(box.hi.y - self->lo.y, self->side, self->ny)};
+    *x = bucket_along(p.x - self->lo.x, self->per_metre, self->nx);
+    *y = bucket_along(p.y - self->lo.y, self->per_metre, self->ny);
+}
+
+aisle_bucket_range aisle_layout_index_range(const aisle_layout_index *self, aisle_aabb box) {
+    aisle_bucket_range r;
+    aisle_layout_index_bucket(self, box.lo, &r.x0, &r.y0);
+    aisle_layout_index_bucket(self, box.hi, &r.x1, &r.y1);
+    return r;
 }
 
 static bool do_lists_fit(const aisle_layout_index *self, const aisle_layout_blocks *blocks) {
@@ -56,6 +61,7 @@ static void choose_side(aisle_layout_index *self, const aisle_layout_blocks *blo
     self->lo = bounds.lo;
     self->side = side;
     for (;;) {
+        self->per_metre = 1.0 / self->side;
         self->nx = (uint32_t)((bounds.hi.x - bounds.lo.x) / self->side) + 1U;
         self->ny = (uint32_t)((bounds.hi.y - bounds.lo.y) / self->side) + 1U;
         if ((uint64_t)self->nx * self->ny <= self->bucket_capacity && do_lists_fit(self, blocks)) {

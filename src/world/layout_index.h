@@ -13,7 +13,8 @@
 
 typedef struct aisle_layout_index {
     aisle_vec2 lo;
-    double side;       // m
+    double side;       // m, a power of two
+    double per_metre;  // buckets: 1 / side, exactly
     uint32_t nx, ny;   // 0: empty
     uint32_t *starts;  // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
     uint16_t *entries; // [entry_capacity] block indices, rising in a bucket
@@ -38,6 +39,9 @@ void aisle_layout_index_carve(aisle_layout_index *self, aisle_arena *arena, uint
 // Over the store's bounds, which are not empty and finite; at most as many blocks as were carved for; side (m) > 0, of
 // the buckets if they fit.
 void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_blocks *blocks, double side);
+
+// Bucket a place belongs to; index not empty, p finite.
+void aisle_layout_index_bucket(const aisle_layout_index *self, aisle_vec2 p, uint32_t *x, uint32_t *y);
 
 // Buckets a box belongs to; index not empty, box finite.
 aisle_bucket_range aisle_layout_index_range(const aisle_layout_index *self, aisle_aabb box);

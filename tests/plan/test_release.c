@@ -135,6 +135,14 @@ static void test_the_certificate_is_the_crc_of_encoded_waypoints_and_revisions(v
         crc = aisle_crc32(crc, bytes, 4);
     }
     TEST_ASSERT_EQUAL_HEX32(crc, aisle_path_certificate(&path));
+    uint8_t bytes[4096];
+    size_t size = 0;
+    path.certificate = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_path_encode(&path, bytes, sizeof bytes, &size));
+    TEST_ASSERT_EQUAL_HEX32(crc, path.certificate);
+    TEST_ASSERT_EQUAL_size_t(path_size, size);
+    TEST_ASSERT_EQUAL_MEMORY(path_bytes, bytes, size);
+    TEST_ASSERT_EQUAL(AISLE_ERR_CAPACITY, aisle_path_encode(&path, bytes, path_size - 1, &size));
 }
 
 int main(void) {
