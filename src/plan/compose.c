@@ -37,7 +37,7 @@ static bool arc_free(void *ctx, const aisle_waypoint_msg *from, const aisle_wayp
     return arc_is_sure(self, to) || aisle_space_piece_free(space, from, to, need, &self->units);
 }
 
-static aisle_corner_rule corner_rule(aisle_compose *self, bool is_tangent) {
+static aisle_corner_rule corner_rule(aisle_compose *self, const aisle_leg *leg) {
     const aisle_vehicle *vehicle = self->request.space->vehicle;
     double zone = (double)self->request.options->zone;
     double sure = vehicle->outer_radius + vehicle->margin;
@@ -47,8 +47,8 @@ static aisle_corner_rule corner_rule(aisle_compose *self, bool is_tangent) {
                               .zone = zone,
                               .arc_free = arc_free,
                               .ctx = self};
-    if (is_tangent) { // proved free by the search, exactly
-        rule.max_radius = rule.sure_radius = self->request.space->keep + vehicle->outer_radius;
+    if (leg->tangent_radius > 0.0 && !leg->use_swarm) { // found free before it became the leg's
+        rule.max_radius = rule.sure_radius = leg->tangent_radius;
         rule.arc_free = NULL;
     }
     if (vehicle->curvature_max > 0.0) {
@@ -83,7 +83,7 @@ static void lay_spline(aisle_compose *self, aisle_curve *curve, const aisle_leg 
 
 static void lay_way(aisle_compose *self, aisle_curve *curve, const aisle_leg *leg) {
     const aisle_compose_request *request = &self->request;
-    aisle_corner_rule rule = corner_rule(self, leg->is_tangent && !leg->use_swarm);
+    aisle_corner_rule rule = corner_rule(self, leg);
     if (!leg->use_swarm) {
         aisle_curve_polyline(curve, request->points + leg->first, leg->count, &rule);
     } else if (request->options->interpolation == AISLE_OPTIONS_LINEAR) {
@@ -105,6 +105,22 @@ static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
         aisle_curve_turn_to(curve, goal->theta);
     }
     aisle_curve_goal(curve, goal->id);
+}
+
+bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, uint32_t *units) {
+    self->request = *request;
+    const aisle_leg *leg = &request->legs[i];
+    const aisle_vec2 *p = request->points + leg->first;
+    aisle_corner_rule rule = corner_rule(self, leg);
+    aisle_curve curve = {.w = self->raw, .capacity = AISLE_PATH_MAX_WAYPOINTS};
+    aisle_curve_begin(&curve, (aisle_pose2){p[0].x, p[0].y, aisle_atan2(p[1].y - p[0].y, p[1].x - p[0].x)});
+    aisle_curve_polyline(&curve, p, leg->count, &rule);
+    bool free = !curve.overflow;
+    for (uint32_t k = 1; free && k < curve.n; k++) {
+        const double need = request->space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
+        free = aisle_space_piece_free(request->space, &curve.w[k - 1U], &curve.w[k], need, units);
+    }
+    return free;
 }
 
 // Heading with which the first leg leaves.

@@ -7,13 +7,13 @@
 #include "plan/swarm.h"
 
 typedef struct aisle_leg {
-    uint32_t first, count;          // of its seed polyline in the route's points
-    uint32_t via_count;             // points of the swarm's best, start and goal included; 0 = none
-    bool use_swarm;                 // build from the swarm's best, else from the seed
-    aisle_space_mode mode;          // the body the seed was found with
-    bool is_tangent;                // the seed is the shortest way (tangent.h): its corners are arcs of the reach
-    double bound;                   // m, no way of this leg is shorter
-    uint32_t attempt;               // at its seed
+    uint32_t first, count; // of its seed polyline in the route's points
+    uint32_t via_count;    // points of the swarm's best, start and goal included; 0 = none
+    bool use_swarm;        // build from the swarm's best, else from the seed
+    aisle_space_mode mode; // the body the seed was found with
+    double tangent_radius; // m, the seed is the shortest way of such a disc (tangent.h), its corners arcs; 0: not
+    double bound;          // m, no way of this leg is shorter
+    uint32_t attempt;      // at its seed
     double seed_value, swarm_value; // measured cost of either way of building it; negative = not measured
     aisle_vec2 via[AISLE_SWARM_VIAS + 2U];
 } aisle_leg;

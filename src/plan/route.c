@@ -62,6 +62,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->first.ready = false;
     self->better.ready = false;
     self->stops = false;
+    self->is_wide = false;
     self->announced = false;
     self->has_place = false;
     self->spent = 0;

@@ -92,6 +92,7 @@ typedef struct aisle_route {
     aisle_proof *trial;        // where the path being verified goes
     aisle_route_stage stage;
     bool stops;                          // build with a stop in every corner
+    bool is_wide;                        // tight ways (route_tangent.c) failed
     bool announced;                      // AISLE_PARTIAL was told
     uint32_t spent, budget, proof_units; // work units; what the first build and proof took
     uint32_t budget_default;

@@ -4,6 +4,8 @@
 
 #define RESERVE_QUARTERS 3U // of all that the first proof took: kept back for building and proving the swarm's path
 
+#define WORTH_A_SWARM 0.01 // of the length, what the swarm must be able to gain
+
 // ---- BUILD, VERIFY
 
 void aisle_route_begin_build(aisle_route *self, aisle_proof *trial) {
@@ -54,6 +56,11 @@ static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisl
         self->stage = AISLE_ROUTE_END; // the first path stays
         return AISLE_OK;
     }
+    if (!self->is_wide && aisle_objective_is_length(&self->objective) && !aisle_vehicle_is_disc(self->vehicle)) {
+        self->is_wide = true; // tight ways did not work out: again, for the disc in which the body turns
+        aisle_route_begin_legs(self);
+        return AISLE_BUSY;
+    }
     if (!self->stops && self->vehicle->curvature_max <= 0.0) {
         self->stops = true;
         aisle_route_begin_build(self, &self->first);
@@ -62,7 +69,7 @@ static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisl
     return aisle_route_refuse_at(self, cause, id, 0.0, place);
 }
 
-static aisle_compose_request build_request(aisle_route *self) {
+aisle_compose_request aisle_route_build_request(aisle_route *self) {
     return (aisle_compose_request){.space = &self->space,
                                    .objective = &self->objective,
                                    .options = &self->request.options,
@@ -77,7 +84,7 @@ static aisle_compose_request build_request(aisle_route *self) {
 aisle_status aisle_route_step_build(aisle_route *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;
     if (self->compose.path == NULL) {
-        aisle_compose_request request = build_request(self);
+        aisle_compose_request request = aisle_route_build_request(self);
         st = aisle_compose_start(&self->compose, &request, self->path);
         if (st != AISLE_OK) {
             return fall_back(self, AISLE_STATUS_LIMIT, 0, aisle_route_place(&self->request.start));
@@ -119,7 +126,9 @@ static aisle_status after_first_proof(aisle_route *self) {
     // A disc's taut string cannot be beaten on length: AUTO leaves the swarm to other bodies (which it held to the
     // turning disc) and other objectives.
     bool taut_is_best = self->request.options.planner == AISLE_OPTIONS_AUTO &&
-                        aisle_objective_is_length(&self->objective) && aisle_vehicle_is_disc(self->vehicle);
+                        aisle_objective_is_length(&self->objective) &&
+                        (aisle_vehicle_is_disc(self->vehicle) ||
+                         (double)self->path->length <= length_bound(self) * (1.0 + WORTH_A_SWARM));
     if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops) {
         self->stage = AISLE_ROUTE_END;
         return AISLE_OK;

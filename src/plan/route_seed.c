@@ -50,8 +50,6 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     return AISLE_BUSY;
 }
 
-static void begin_leg(aisle_route *self);
-
 aisle_status aisle_route_check(aisle_route *self) {
     const aisle_request *request = &self->request;
     if (!options_are_known(&request->options) ||
@@ -65,7 +63,7 @@ aisle_status aisle_route_check(aisle_route *self) {
         st = check_stop(self, &request->goals[i], false);
     }
     if (st == AISLE_BUSY) {
-        begin_leg(self);
+        aisle_route_begin_legs(self);
     }
     return st;
 }
@@ -146,6 +144,12 @@ static void begin_leg(aisle_route *self) {
     } else {
         aisle_route_begin_tangent(self);
     }
+}
+
+void aisle_route_begin_legs(aisle_route *self) {
+    self->leg = 0;
+    self->point_count = 0;
+    begin_leg(self);
 }
 
 void aisle_route_next_leg(aisle_route *self) {

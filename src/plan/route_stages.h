@@ -32,7 +32,8 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
     return aisle_route_refuse(self, cause, id, value);
 }
 
-// Begin the seed of the leg under way with the n-th attempt; go on to the next leg or to BUILD.
+// Begin the first leg; the seed of the leg under way with the n-th attempt; go on to the next leg or to BUILD.
+void aisle_route_begin_legs(aisle_route *self);
 void aisle_route_begin_seed(aisle_route *self, uint32_t n);
 void aisle_route_next_leg(aisle_route *self);
 
@@ -47,6 +48,7 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
 
 // route_proof.c
+aisle_compose_request aisle_route_build_request(aisle_route *self);
 void aisle_route_begin_build(aisle_route *self, aisle_proof *trial);
 aisle_status aisle_route_step_build(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units);

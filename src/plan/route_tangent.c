@@ -27,18 +27,36 @@ void aisle_route_begin_tangent(aisle_route *self) {
     search(self, AISLE_ROUTE_BOUND);
 }
 
-// Takes the way found, for the turning disc, as the leg's. False: it is not free with the search's slack.
-static bool take_way(aisle_route *self) {
+// Takes the way found, pulled about circles of this radius, as the leg's. False: it is not free for such a disc.
+static bool take_way(aisle_route *self, double radius) {
     aisle_leg *leg = &self->legs[self->leg];
-    uint32_t count =
-        aisle_tangent_points(&self->tangent, self->space.reach, self->points + leg->first, AISLE_SEED_POINTS_MAX);
-    if (count == 0U) {
-        return false;
+    leg->count = aisle_tangent_points(&self->tangent, radius, self->points + leg->first, AISLE_SEED_POINTS_MAX);
+    leg->tangent_radius = leg->count > 0U ? radius : 0.0;
+    return leg->count > 0U;
+}
+
+static void keep_way(aisle_route *self) {
+    self->point_count += self->legs[self->leg].count;
+    aisle_route_next_leg(self);
+}
+
+// A long body may follow a way that is too tight for the disc in which it turns, its heading along the way: the way of
+// the disc inside it, in arcs as narrow as the body can drive. False: none of those tried is free.
+static bool take_tight_way(aisle_route *self) {
+    static const double parts[] = {0.02, 0.1, 0.25, 0.5, 0.75}; // of what lies between the inner and the outer radius
+    const aisle_vehicle *vehicle = self->vehicle;
+    double between = vehicle->outer_radius - vehicle->inner_radius;
+    aisle_compose_request request = aisle_route_build_request(self);
+    for (uint32_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        double radius = vehicle->inner_radius + self->space.keep + parts[i] * between;
+        bool may_bend = vehicle->curvature_max <= 0.0 || radius * vehicle->curvature_max >= 1.0;
+        if (may_bend && take_way(self, radius) &&
+            aisle_compose_way_free(&self->compose, &request, self->leg, &self->spent)) {
+            return true;
+        }
     }
-    leg->count = count;
-    leg->is_tangent = true;
-    self->point_count += count;
-    return true;
+    self->legs[self->leg].tangent_radius = 0.0;
+    return false;
 }
 
 static void after_bound(aisle_route *self, bool found) {
@@ -47,8 +65,9 @@ static void after_bound(aisle_route *self, bool found) {
         aisle_route_begin_seed(self, 0);
         return;
     }
-    if (found && aisle_vehicle_is_disc(self->vehicle) && take_way(self)) {
-        aisle_route_next_leg(self);
+    bool is_disc = aisle_vehicle_is_disc(self->vehicle);
+    if (found && (is_disc ? take_way(self, self->space.reach) : !self->is_wide && take_tight_way(self))) {
+        keep_way(self);
         return;
     }
     search(self, AISLE_ROUTE_WAY);
@@ -66,8 +85,8 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     }
     if (self->tangent_aim == AISLE_ROUTE_BOUND && st != AISLE_PARTIAL) {
         after_bound(self, st == AISLE_OK);
-    } else if (st == AISLE_OK && take_way(self)) {
-        aisle_route_next_leg(self);
+    } else if (st == AISLE_OK && take_way(self, self->space.reach)) {
+        keep_way(self);
     } else {
         aisle_route_begin_seed(self, 0);
     }
