@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#define EXPANSION_UNITS 2U // beside what it looks at
+#define NODE_QUARTERS 4U       // of a work unit, for a node that comes up
+#define EXPANSION_QUARTERS 16U // for one that is expanded, beside what it looks at
 
 static uint32_t or_default(uint32_t value, uint32_t fallback) {
     return value == 0U ? fallback : value;
@@ -123,7 +124,7 @@ void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double
     self->radius = radius;
     self->allowed = aisle_aabb_grow(aisle_layout_bounds(layout), -radius);
     self->goal = goal;
-    self->count = self->expansions = self->tests = self->units = 0U;
+    self->count = self->expansions = self->tests = self->quarters = 0U;
     self->found = AISLE_TANGENT_NONE;
     forget(self);
     self->bound = aisle_vec2_distance(start, goal);
@@ -156,7 +157,7 @@ static bool is_way_free(aisle_tangent *self, const aisle_tangent_node *node) {
 
 static aisle_status settle(aisle_tangent *self, uint32_t item) {
     aisle_tangent_node *node = &self->nodes[item];
-    self->units++;
+    self->quarters += NODE_QUARTERS;
     if (is_dominated(self, node) || !is_way_free(self, node)) {
         return AISLE_BUSY;
     }
@@ -170,13 +171,14 @@ static aisle_status settle(aisle_tangent *self, uint32_t item) {
         self->expanded[node->corner] = item;
     }
     self->expansions++;
-    self->units += EXPANSION_UNITS;
+    self->quarters += EXPANSION_QUARTERS;
     return aisle_tangent_see(self, item) == AISLE_OK ? AISLE_BUSY : AISLE_ERR_CAPACITY;
 }
 
 aisle_status aisle_tangent_step(aisle_tangent *self, uint32_t units, uint32_t *spent) {
     aisle_status st = AISLE_BUSY;
-    while (st == AISLE_BUSY && self->units < units) {
+    uint32_t until = units < UINT32_MAX / 8U ? 4U * units : UINT32_MAX / 2U;
+    while (st == AISLE_BUSY && self->quarters < until) {
         uint32_t item = aisle_heap_pop(&self->open);
         if (item == AISLE_HEAP_NONE) {
             st = AISLE_PARTIAL;
@@ -185,7 +187,7 @@ aisle_status aisle_tangent_step(aisle_tangent *self, uint32_t units, uint32_t *s
         self->bound = aisle_max(self->bound, f_of(self->open.key[item]));
         st = settle(self, item);
     }
-    *spent += self->units;
-    self->units = 0;
+    *spent += self->quarters / 4U;
+    self->quarters %= 4U; // so that the sum does not depend on the slices
     return st;
 }

@@ -17,7 +17,8 @@
 // the occupied ground is convex can turn a way.
 //
 // Memory: 88 bytes a node, 8 a corner, 4 a block (layout.h), all of it free for others between searches. Time: about 3 us an expansion (20 to 40 obstacles
-// seen), 0.3 us a tested line; one work unit stands for two obstacles looked at. Sliced by node.
+// seen), 0.3 us a tested line; one work unit stands for an obstacle measured
+// or four passed over. Sliced by node.
 #ifndef AISLE_PLAN_TANGENT_H
 #define AISLE_PLAN_TANGENT_H
 
@@ -55,7 +56,7 @@ typedef struct aisle_tangent {
     double bound;                    // m, no way is shorter
     uint32_t found;                  // the goal's node
     uint32_t expansions, tests;      // counters since start
-    uint32_t units;
+    uint32_t quarters;               // of work units, since the last step
 } aisle_tangent;
 
 // What it carves others may use between the end of a search and the next start.

@@ -38,6 +38,7 @@ static bool is_clear_of(const straight *way, const aisle_convex *shape) {
 }
 
 static bool is_block_clear(aisle_tangent *self, const straight *way, uint32_t index) {
+    self->quarters++;
     const aisle_aabb box = aisle_layout_block_box(self->layout, index);
     aisle_vec2 centre = aisle_vec2_lerp(box.lo, box.hi, 0.5);
     double aside = fabs(aisle_vec2_cross(way->d, aisle_vec2_sub(centre, way->p)));
@@ -47,7 +48,7 @@ static bool is_block_clear(aisle_tangent *self, const straight *way, uint32_t in
     }
     aisle_layout_block block;
     aisle_layout_block_at(self->layout, index, &block);
-    self->units++;
+    self->quarters += 3U;
     return !block.is_obstacle || is_clear_of(way, &block.shape);
 }
 
@@ -150,7 +151,7 @@ static bool is_arc_clear_in(aisle_tangent *self, double radius, const bend *arc,
         self->seen[index] = stamp;
         aisle_layout_block block;
         aisle_layout_block_at(self->layout, index, &block);
-        self->units++;
+        self->quarters += 4U;
         if (block.is_obstacle && aisle_convex_point_gap(&block.shape, arc->about.centre) < 2.0 * radius &&
             !is_arc_clear_of(arc, radius, &block.shape)) {
             return false;

@@ -164,6 +164,7 @@ static void look_at_corner(view *v, uint32_t index, const aisle_layout_block *bl
 }
 
 static void look_at_block(view *v, uint32_t index) {
+    v->self->quarters++;
     const aisle_aabb bounds = aisle_layout_block_box(v->self->layout, index);
     const box around = {aisle_vec2_lerp(bounds.lo, bounds.hi, 0.5),
                         aisle_vec2_scale(aisle_vec2_sub(bounds.hi, bounds.lo), 0.5)};
@@ -184,7 +185,7 @@ static void look_at_block(view *v, uint32_t index) {
         double beyond = aisle_max(s.right.length, s.left.length) + 2.0 * v->self->radius;
         hide_between(v, s.right.d, s.left.d, beyond);
     }
-    v->self->units++;
+    v->self->quarters += 7U;
 }
 
 static void look_at_bucket(view *v, uint32_t bx, uint32_t by) {
