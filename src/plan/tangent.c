@@ -75,6 +75,11 @@ static bool may_stand(const aisle_tangent *self, aisle_vec2 p) {
            p.y >= self->allowed.lo.y - touch && p.y <= self->allowed.hi.y + touch;
 }
 
+// Does the distance field know of contact there? Most corners of a scan lie within reach of others.
+static bool is_blocked(const aisle_tangent *self, aisle_vec2 p) {
+    return aisle_grid_gap_upper(aisle_layout_grid(self->layout), p) < self->radius;
+}
+
 static void add(aisle_tangent *self, const aisle_tangent_node *node, double f) {
     self->nodes[self->count] = *node;
     aisle_status st = aisle_heap_add(&self->open, self->count, key_of(f));
@@ -85,7 +90,7 @@ static void add(aisle_tangent *self, const aisle_tangent_node *node, double f) {
 aisle_status aisle_tangent_push(aisle_tangent *self, uint32_t from, const aisle_tangent_node *to, double length) {
     const aisle_tangent_node *parent = &self->nodes[from];
     aisle_vec2 p = aisle_contact(aisle_node_circle(to), to->d);
-    if (!may_stand(self, p)) {
+    if (!may_stand(self, p) || is_blocked(self, p)) {
         return AISLE_OK;
     }
     aisle_tangent_node node = *to;
@@ -148,9 +153,10 @@ static bool is_way_free(aisle_tangent *self, const aisle_tangent_node *node) {
     }
     const aisle_tangent_node *parent = &self->nodes[node->parent];
     aisle_circle about = aisle_node_circle(parent);
+    aisle_vec2 p = aisle_contact(about, node->d);
+    aisle_vec2 q = aisle_contact(aisle_node_circle(node), node->d);
     self->tests++;
-    return aisle_tangent_line_free(self, self->radius, aisle_contact(about, node->d),
-                                   aisle_contact(aisle_node_circle(node), node->d)) &&
+    return !is_blocked(self, aisle_vec2_lerp(p, q, 0.5)) && aisle_tangent_line_free(self, self->radius, p, q) &&
            (parent->corner == AISLE_TANGENT_NONE ||
             aisle_tangent_arc_free(self, self->radius, parent, parent->d, node->d));
 }
