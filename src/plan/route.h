@@ -62,11 +62,6 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_END
 } aisle_route_stage;
 
-typedef enum aisle_route_tangent_aim {
-    AISLE_ROUTE_BOUND, // for the disc inside the footprint: no way is shorter
-    AISLE_ROUTE_WAY    // for the disc in which the footprint turns: the way itself
-} aisle_route_tangent_aim;
-
 typedef struct aisle_route {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
@@ -74,8 +69,8 @@ typedef struct aisle_route {
     aisle_objective objective;
     aisle_space space;
     aisle_tangent tangent;
-    aisle_route_tangent_aim tangent_aim;
-    uint32_t tangent_units; // spent there
+    uint32_t tangent_search; // which one, see route_tangent.c
+    uint32_t tangent_units;  // spent there
     aisle_seed seed;
     aisle_taut taut;
     aisle_swarm swarm;

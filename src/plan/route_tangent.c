@@ -11,10 +11,23 @@ static bool wants_shortest(const aisle_route *self) {
     return aisle_objective_is_length(&self->objective) && self->request.options.planner != AISLE_OPTIONS_PSO;
 }
 
-static void search(aisle_route *self, aisle_route_tangent_aim aim) {
+// Radii that the search is made for, as parts of what lies between the discs inside and around the body: the bound's
+// first, the body's own turning disc last. In between for long bodies: a way that is too tight for them at one place is
+// another one a little wider.
+static const double searched[] = {0.0, 0.1, 0.4, 1.0};
+#define SEARCHES (sizeof searched / sizeof searched[0])
+#define BOUND 0U
+#define TURNING (SEARCHES - 1U)
+
+static double radius_at(const aisle_route *self, double part) {
     const aisle_vehicle *vehicle = self->vehicle;
-    double radius = aim == AISLE_ROUTE_BOUND ? vehicle->inner_radius + vehicle->margin : self->space.reach;
-    self->tangent_aim = aim;
+    return vehicle->inner_radius + self->space.keep + part * (vehicle->outer_radius - vehicle->inner_radius);
+}
+
+static void search(aisle_route *self, uint32_t n) {
+    const aisle_vehicle *vehicle = self->vehicle;
+    double radius = n == BOUND ? vehicle->inner_radius + vehicle->margin : radius_at(self, searched[n]);
+    self->tangent_search = n;
     self->stage = AISLE_ROUTE_TANGENT;
     aisle_tangent_start(&self->tangent, self->layout, radius, aisle_route_place(aisle_route_leg_start(self, self->leg)),
                         aisle_route_place(&self->request.goals[self->leg]));
@@ -24,7 +37,7 @@ void aisle_route_begin_tangent(aisle_route *self) {
     aisle_leg *leg = &self->legs[self->leg];
     leg->mode = AISLE_SPACE_FREE_TURN;
     aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
-    search(self, AISLE_ROUTE_BOUND);
+    search(self, BOUND);
 }
 
 // Takes the way found, pulled about circles of this radius, as the leg's. False: it is not free for such a disc.
@@ -35,22 +48,16 @@ static bool take_way(aisle_route *self, double radius) {
     return leg->count > 0U;
 }
 
-static void keep_way(aisle_route *self) {
-    self->point_count += self->legs[self->leg].count;
-    aisle_route_next_leg(self);
-}
-
-// A long body may follow a way that is too tight for the disc in which it turns, its heading along the way: the way of
-// the disc inside it, in arcs as narrow as the body can drive. False: none of those tried is free.
+// A long body may follow a way that is too tight for the disc in which it turns, its heading along the way, in arcs as
+// narrow as it can drive. False: none of those tried is free.
 static bool take_tight_way(aisle_route *self) {
-    static const double parts[] = {0.02, 0.1, 0.25, 0.5, 0.75}; // of what lies between the inner and the outer radius
+    static const double tried[] = {0.02, 0.12, 0.25, 0.42, 0.7}; // as `searched`
     const aisle_vehicle *vehicle = self->vehicle;
-    double between = vehicle->outer_radius - vehicle->inner_radius;
     aisle_compose_request request = aisle_route_build_request(self);
-    for (uint32_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        double radius = vehicle->inner_radius + self->space.keep + parts[i] * between;
+    for (uint32_t i = 0; i < sizeof tried / sizeof tried[0]; i++) {
+        double radius = radius_at(self, tried[i]);
         bool may_bend = vehicle->curvature_max <= 0.0 || radius * vehicle->curvature_max >= 1.0;
-        if (may_bend && take_way(self, radius) &&
+        if (may_bend && tried[i] > searched[self->tangent_search] && take_way(self, radius) &&
             aisle_compose_way_free(&self->compose, &request, self->leg, &self->spent)) {
             return true;
         }
@@ -59,18 +66,29 @@ static bool take_tight_way(aisle_route *self) {
     return false;
 }
 
-static void after_bound(aisle_route *self, bool found) {
-    self->legs[self->leg].bound = self->tangent.bound;
+// Takes the way found if it is one for the body. The turning disc's own way is.
+static bool take(aisle_route *self) {
+    if (self->tangent_search == TURNING || aisle_vehicle_is_disc(self->vehicle)) {
+        return take_way(self, self->space.reach);
+    }
+    return !self->is_wide && take_tight_way(self);
+}
+
+static void go_on(aisle_route *self, bool found) {
+    if (self->tangent_search == BOUND) {
+        self->legs[self->leg].bound = self->tangent.bound;
+    }
     if (!wants_shortest(self)) {
         aisle_route_begin_seed(self, 0);
-        return;
+    } else if (found && take(self)) {
+        self->point_count += self->legs[self->leg].count;
+        aisle_route_next_leg(self);
+    } else if (self->tangent_search < TURNING) {
+        bool straight_on = aisle_vehicle_is_disc(self->vehicle) || self->is_wide;
+        search(self, straight_on ? TURNING : self->tangent_search + 1U);
+    } else {
+        aisle_route_begin_seed(self, 0);
     }
-    bool is_disc = aisle_vehicle_is_disc(self->vehicle);
-    if (found && (is_disc ? take_way(self, self->space.reach) : !self->is_wide && take_tight_way(self))) {
-        keep_way(self);
-        return;
-    }
-    search(self, AISLE_ROUTE_WAY);
 }
 
 aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
@@ -83,12 +101,10 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     if (st == AISLE_BUSY && left_for_tangent(self) > 0U) {
         return AISLE_BUSY;
     }
-    if (self->tangent_aim == AISLE_ROUTE_BOUND && st != AISLE_PARTIAL) {
-        after_bound(self, st == AISLE_OK);
-    } else if (st == AISLE_OK && take_way(self, self->space.reach)) {
-        keep_way(self);
+    if (self->tangent_search == BOUND && st == AISLE_PARTIAL) {
+        aisle_route_begin_seed(self, 0); // no way at all: the grid is asked as well, and then why
     } else {
-        aisle_route_begin_seed(self, 0);
+        go_on(self, st == AISLE_OK);
     }
     return AISLE_BUSY;
 }
