@@ -467,6 +467,65 @@ static void an_upper_bound_changes_nothing_unless_it_is_wrong(void) {
     optimum_free(world);
 }
 
+// Boxes and triangles on whole numbers: sides in line, shared corners, repeated shapes, gaps of just 2 radii.
+static void lattice_world(uint64_t seed) {
+    state = seed;
+    polygon_count = 0;
+    while (polygon_count < POLYGONS) {
+        double x = floor(uniform(1.0, 9.0)), y = floor(uniform(1.0, 9.0));
+        double w = floor(uniform(1.0, 3.0)), h = floor(uniform(1.0, 3.0));
+        double xy[8] = {x, y, x + w, y, x + w, y + h, x, y + h};
+        add(xy, uniform(0.0, 1.0) < 0.3 ? 3 : 4);
+    }
+}
+
+static void mirror(void) { // at the diagonal, obstacles in the other order
+    for (size_t i = 0; i < polygon_count; i++) {
+        for (size_t k = 0; k < polygons[i].count; k++) {
+            optimum_point p = corners[i][k];
+            corners[i][k].x = p.y;
+            corners[i][k].y = p.x;
+        }
+    }
+    for (size_t i = 0; i < polygon_count / 2; i++) {
+        optimum_polygon swapped = polygons[i];
+        polygons[i] = polygons[polygon_count - 1 - i];
+        polygons[polygon_count - 1 - i] = swapped;
+    }
+}
+
+static void lattice_worlds_give_the_same_from_every_side(void) {
+    static const double radii[] = {0.0, 0.5, 1.0};
+    unsigned found = 0, none = 0;
+    for (uint64_t seed = 601; seed < 601 + 5 * SEEDS; seed++) {
+        double radius = radii[seed % 3];
+        lattice_world(seed);
+        optimum_path path = solve(radius, 0.0, 0.0, 10.0, 9.5);
+        if (path.result == OPTIMUM_FOUND) {
+            path_is_free_and_as_long_as_told(&path, radius);
+        }
+        found += path.result == OPTIMUM_FOUND;
+        none += path.result == OPTIMUM_NONE;
+        double there = path.length, back = length(radius, 10.0, 9.5, 0.0, 0.0);
+        mirror();
+        double mirrored = length(radius, 0.0, 0.0, 9.5, 10.0);
+        TEST_ASSERT_TRUE(there == back || fabs(there - back) < 1e-9);
+        TEST_ASSERT_TRUE(there == mirrored || fabs(there - mirrored) < 1e-9);
+        optimum_path_free(&path);
+    }
+    TEST_ASSERT_TRUE(found >= SEEDS);
+    TEST_ASSERT_TRUE(none >= 1);
+}
+
+// The free space is closed: what just fits is the limit of what fits easily.
+static void what_just_fits_is_as_long_as_what_nearly_does(void) {
+    for (uint64_t seed = 801; seed < 801 + 5 * SEEDS; seed++) {
+        lattice_world(seed);
+        double just = length(0.5, 0.0, 0.0, 10.0, 9.5), nearly = length(0.5 - 1e-7, 0.0, 0.0, 10.0, 9.5);
+        TEST_ASSERT_TRUE(just == nearly || (nearly <= just && just < nearly + 1e-3));
+    }
+}
+
 // --- cells ---
 
 enum { WIDTH = 26, HEIGHT = 20 };
@@ -569,6 +628,8 @@ int main(void) {
     RUN_TEST(the_way_of_telling_an_obstacle_does_not_matter);
     RUN_TEST(a_point_passes_between_polygons_that_touch);
     RUN_TEST(an_upper_bound_changes_nothing_unless_it_is_wrong);
+    RUN_TEST(lattice_worlds_give_the_same_from_every_side);
+    RUN_TEST(what_just_fits_is_as_long_as_what_nearly_does);
     RUN_TEST(cells_and_squares_have_the_same_optimum);
     RUN_TEST(cells_know_walls_insides_and_the_rim);
     return UNITY_END();
