@@ -12,7 +12,8 @@
 // optimum by more; and NONE is a proof that no way exists for R, of whatever kind.
 //
 // Memory: malloc, aborts when there is none. Time: O(n^2) tangents times the cost of a free test for n arcs, fewer where
-// A* does not come; 20 obstacles take milliseconds, 306 about a second. No recursion, no globals.
+// A* does not come; 20 obstacles take a millisecond, 306 or a scanned map of a million cells a tenth of a second. No
+// recursion, no globals.
 // Determinism: the same input gives the same bits in the same build.
 #ifndef OPTIMUM_H
 #define OPTIMUM_H

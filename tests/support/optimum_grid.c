@@ -186,14 +186,15 @@ static void add_corners(optimum_world *world, const uint8_t *occupied) {
     intervals blocked = {0};
     for (int64_t j = 1; j < c->height; j++) {
         for (int64_t i = 1; i < c->width; i++) {
-            bool in[4];
+            int in = 0, opposite = 0;
             for (int q = 0; q < 4; q++) {
-                in[q] = is_occupied(c, occupied, i + step[q][0], j + step[q][1]);
-            }
-            for (int q = 0; q < 4; q++) {
-                if (in[(q + 2) % 4] && !in[(q + 1) % 4] && !in[(q + 3) % 4]) {
-                    add_corner(world, &w, i, j, q, &blocked);
+                if (is_occupied(c, occupied, i + step[q][0], j + step[q][1])) {
+                    in++;
+                    opposite = (q + 2) % 4;
                 }
+            }
+            if (in == 1) { // where two cells meet in a corner, each blocks the other's
+                add_corner(world, &w, i, j, opposite, &blocked);
             }
         }
     }

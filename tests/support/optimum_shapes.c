@@ -94,7 +94,7 @@ static bool crosses(vec a, vec b, vec p, vec q) {
 
 bool optimum_hits(const vec *hull, size_t count, real reach, vec p, vec q) {
     real square = reach * reach;
-    bool inside = count > 2;
+    bool inside = true; // of no point or line: there some product is never above 0
     for (size_t i = 0; i < count; i++) {
         vec a = hull[i], b = hull[i + 1 < count ? i + 1 : 0];
         if (square_to_segment(a, p, q) < square || square_to_segment(p, a, b) < square ||

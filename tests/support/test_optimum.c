@@ -7,7 +7,7 @@
 
 // The judge here is double and sampled; it shares nothing with optimum*.c.
 
-enum { SEEDS = 40, POLYGONS = 7, CORNERS = 6, RING = 24 };
+enum { SEEDS = 40, POLYGONS = 16, CORNERS = 6, RING = 24 };
 
 static const double pi = 3.14159265358979323846;
 static optimum_point corners[POLYGONS][CORNERS + 1];
@@ -138,6 +138,50 @@ static void two_circles_that_touch_let_a_disc_through(void) {
     expect(sqrt(far * far - 0.25) + 0.5 * angle, 0.5, 2.0, 7.5, 5.0, 5.0);
 }
 
+static void an_obstacle_near_an_arc_closes_it(void) {
+    double point[2] = {5.0, 5.0};
+    add(point, 1);
+    expect(round_circle(3.0, 0.4, 1.0), 1.0, 2.0, 5.4, 8.0, 5.4);
+    add_box(4.9, 6.9, 5.1, 11.0); // leaves 1.9 above the point
+    expect(round_circle(3.0, -0.4, 1.0), 1.0, 2.0, 5.4, 8.0, 5.4);
+    polygon_count = 1;
+    add_box(4.9, 7.0, 5.1, 11.0);
+    expect(round_circle(3.0, 0.4, 1.0), 1.0, 2.0, 5.4, 8.0, 5.4);
+    polygon_count = 1;
+    double tip[6] = {5.0, 6.9, 5.1, 11.0, 4.9, 11.0}; // a corner instead of a side
+    add(tip, 3);
+    expect(round_circle(3.0, -0.4, 1.0), 1.0, 2.0, 5.4, 8.0, 5.4);
+}
+
+static void an_arc_is_used_up_to_where_it_is_closed(void) {
+    double point[2] = {5.0, 5.0}, tip[6] = {3.9, 6.3, 4.0, 11.0, 3.8, 11.0}; // closes from 98.6 to 161.8 degrees
+    double gx = -0.965, gy = 0.29, far = hypot(gx, gy);                      // left at 169 degrees
+    double turn = 1.5 * pi - acos(1.0 / 3.0) - atan2(gy, gx) - acos(1.0 / far);
+    add(point, 1);
+    add_box(-1.0, 6.3, 11.0, 11.0); // closes up to 162.5 degrees
+    expect(sqrt(8.0) + turn + sqrt(far * far - 1.0), 1.0, 5.0, 2.0, 5.0 + gx, 5.0 + gy);
+    polygon_count = 1;
+    add(tip, 3);
+    expect(sqrt(8.0) + turn + sqrt(far * far - 1.0), 1.0, 5.0, 2.0, 5.0 + gx, 5.0 + gy);
+}
+
+static void each_side_of_the_bounds_stops_an_arc(void) {
+    for (int side = 0; side < 4; side++) {
+        double dx = side == 1 ? 1.0 : (side == 3 ? -1.0 : 0.0), dy = side == 0 ? 1.0 : (side == 2 ? -1.0 : 0.0);
+        double point[2] = {5.0, 5.0},
+               wall[4] = {5.0, 5.0, 5.0 - 9.0 * dx, 5.0 - 9.0 * dy}; // the way leads over (dx, dy)
+        polygon_count = 0;
+        add(point, 1);
+        add(wall, 2);
+        double sx = 5.0 - 3.0 * dy, sy = 5.0 - 3.0 * dx, gx = 5.0 + 3.0 * dy, gy = 5.0 + 3.0 * dx;
+        double room[4] = {0.0, 0.0, 10.0, 10.0};
+        room[side == 0 ? 3 : (side == 1 ? 2 : (side == 2 ? 1 : 0))] = side < 2 ? 6.0 : 4.0;
+        memcpy(bounds, room, sizeof room);
+        expect(round_circle(3.0, 0.0, 1.0), 1.0, sx, sy, gx, gy);
+        expect_result(OPTIMUM_NONE, 1.0001, sx, sy, gx, gy);
+    }
+}
+
 static void the_bounds_stop_an_arc(void) {
     add_box(4.0, 2.0, 6.0, 11.0); // leaves 2 below
     expect_result(OPTIMUM_FOUND, 2.0, 1.0, 5.0, 9.0, 5.0);
@@ -151,6 +195,7 @@ static void an_end_too_near_an_obstacle_or_outside_is_told(void) {
     add_box(4.0, 4.0, 6.0, 6.0);
     expect_result(OPTIMUM_END_OCCUPIED, 0.5, 3.6, 5.0, 9.0, 5.0);
     expect_result(OPTIMUM_END_OCCUPIED, 0.0, 1.0, 5.0, 5.0, 5.0);
+    expect_result(OPTIMUM_END_OCCUPIED, 0.5, 1.0, 5.0, 5.0, 5.0); // deeper inside than the radius
     expect_result(OPTIMUM_END_OCCUPIED, 0.5, 1.0, 5.0, 10.1, 5.0);
     expect_result(OPTIMUM_FOUND, 0.5, 3.5, 5.0, 9.0, 5.0);
     expect_result(OPTIMUM_FOUND, 0.0, 4.0, 5.0, 10.0, 5.0);
@@ -177,10 +222,10 @@ static void add_random(void) {
     add(xy, n);
 }
 
-static void random_world(uint64_t seed) {
+static void random_world(uint64_t seed, size_t most) {
     state = seed;
     polygon_count = 0;
-    size_t n = (size_t)uniform(3.0, POLYGONS + 0.999);
+    size_t n = (size_t)uniform(3.0, (double)most + 0.999);
     while (polygon_count < n) {
         add_random();
     }
@@ -245,9 +290,9 @@ static void path_is_free_and_as_long_as_told(const optimum_path *path, double ra
 
 static void every_random_path_is_free_and_as_long_as_told(void) {
     unsigned found = 0;
-    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
-        random_world(seed);
-        double radius = seed % 4 == 0 ? 0.0 : uniform(0.1, 0.6);
+    for (uint64_t seed = 1; seed <= 10 * SEEDS; seed++) {
+        random_world(seed, POLYGONS);
+        double radius = seed % 4 == 0 ? 0.0 : uniform(0.1, 1.0);
         optimum_path path = solve(radius, 0.2, 0.3, 9.7, 9.8);
         if (path.result == OPTIMUM_FOUND) {
             path_is_free_and_as_long_as_told(&path, radius);
@@ -255,15 +300,15 @@ static void every_random_path_is_free_and_as_long_as_told(void) {
         }
         optimum_path_free(&path);
     }
-    TEST_ASSERT_TRUE(found >= SEEDS / 2);
+    TEST_ASSERT_TRUE(found >= 5 * SEEDS);
 }
 
 // An upper bound by another road: points on rings just outside the circles round all corners, joined where a sampled
 // straight line is free.
 typedef struct sampled {
-    optimum_point points[POLYGONS * CORNERS * RING + 2];
-    double cost[POLYGONS * CORNERS * RING + 2];
-    bool done[POLYGONS * CORNERS * RING + 2];
+    optimum_point points[7 * CORNERS * RING + 2];
+    double cost[7 * CORNERS * RING + 2];
+    bool done[7 * CORNERS * RING + 2];
     size_t count;
 } sampled;
 static sampled graph;
@@ -326,7 +371,7 @@ static double sampled_length(double radius) {
 static void no_sampled_path_is_shorter(void) {
     unsigned found = 0, none = 0;
     for (uint64_t seed = 101; seed < 101 + SEEDS; seed++) {
-        random_world(seed);
+        random_world(seed, 7);
         double radius = seed % 3 == 0 ? uniform(1.0, 2.0) : uniform(0.1, 0.7);
         graph.points[0].x = 0.2;
         graph.points[0].y = 0.3;
@@ -346,7 +391,7 @@ static void no_sampled_path_is_shorter(void) {
 
 static void there_and_back_are_as_long(void) {
     for (uint64_t seed = 201; seed < 201 + SEEDS; seed++) {
-        random_world(seed);
+        random_world(seed, 7);
         double radius = uniform(0.0, 0.6), there = length(radius, 0.2, 0.3, 9.7, 9.8);
         double back = length(radius, 9.7, 9.8, 0.2, 0.3);
         TEST_ASSERT_TRUE(there == back || fabs(there - back) < 1e-9);
@@ -355,7 +400,7 @@ static void there_and_back_are_as_long(void) {
 
 static void a_wider_disc_has_no_shorter_way(void) {
     for (uint64_t seed = 301; seed < 301 + SEEDS; seed++) {
-        random_world(seed);
+        random_world(seed, 7);
         double before = 0.0;
         for (int i = 0; i < 8; i++) {
             double now = length(0.1 * i, 0.2, 0.3, 9.7, 9.8);
@@ -367,7 +412,7 @@ static void a_wider_disc_has_no_shorter_way(void) {
 
 static void one_obstacle_more_makes_no_way_shorter(void) {
     for (uint64_t seed = 401; seed < 401 + SEEDS; seed++) {
-        random_world(seed);
+        random_world(seed, 7);
         double with = length(0.3, 0.2, 0.3, 9.7, 9.8);
         polygon_count--;
         TEST_ASSERT_TRUE(length(0.3, 0.2, 0.3, 9.7, 9.8) <= with + 1e-7);
@@ -407,7 +452,7 @@ static void a_point_passes_between_polygons_that_touch(void) {
 }
 
 static void an_upper_bound_changes_nothing_unless_it_is_wrong(void) {
-    random_world(7);
+    random_world(7, 7);
     optimum_world *world = optimum_polygons(0.2, bounds, polygons, polygon_count);
     optimum_point start = {0.2, 0.3}, goal = {9.7, 9.8};
     optimum_path free_run = optimum_shortest(world, start, goal, INFINITY);
@@ -422,6 +467,65 @@ static void an_upper_bound_changes_nothing_unless_it_is_wrong(void) {
     optimum_free(world);
 }
 
+// Boxes and triangles on whole numbers: sides in line, shared corners, repeated shapes, gaps of just 2 radii.
+static void lattice_world(uint64_t seed) {
+    state = seed;
+    polygon_count = 0;
+    while (polygon_count < POLYGONS) {
+        double x = floor(uniform(1.0, 9.0)), y = floor(uniform(1.0, 9.0));
+        double w = floor(uniform(1.0, 3.0)), h = floor(uniform(1.0, 3.0));
+        double xy[8] = {x, y, x + w, y, x + w, y + h, x, y + h};
+        add(xy, uniform(0.0, 1.0) < 0.3 ? 3 : 4);
+    }
+}
+
+static void mirror(void) { // at the diagonal, obstacles in the other order
+    for (size_t i = 0; i < polygon_count; i++) {
+        for (size_t k = 0; k < polygons[i].count; k++) {
+            optimum_point p = corners[i][k];
+            corners[i][k].x = p.y;
+            corners[i][k].y = p.x;
+        }
+    }
+    for (size_t i = 0; i < polygon_count / 2; i++) {
+        optimum_polygon swapped = polygons[i];
+        polygons[i] = polygons[polygon_count - 1 - i];
+        polygons[polygon_count - 1 - i] = swapped;
+    }
+}
+
+static void lattice_worlds_give_the_same_from_every_side(void) {
+    static const double radii[] = {0.0, 0.5, 1.0};
+    unsigned found = 0, none = 0;
+    for (uint64_t seed = 601; seed < 601 + 5 * SEEDS; seed++) {
+        double radius = radii[seed % 3];
+        lattice_world(seed);
+        optimum_path path = solve(radius, 0.0, 0.0, 10.0, 9.5);
+        if (path.result == OPTIMUM_FOUND) {
+            path_is_free_and_as_long_as_told(&path, radius);
+        }
+        found += path.result == OPTIMUM_FOUND;
+        none += path.result == OPTIMUM_NONE;
+        double there = path.length, back = length(radius, 10.0, 9.5, 0.0, 0.0);
+        mirror();
+        double mirrored = length(radius, 0.0, 0.0, 9.5, 10.0);
+        TEST_ASSERT_TRUE(there == back || fabs(there - back) < 1e-9);
+        TEST_ASSERT_TRUE(there == mirrored || fabs(there - mirrored) < 1e-9);
+        optimum_path_free(&path);
+    }
+    TEST_ASSERT_TRUE(found >= SEEDS);
+    TEST_ASSERT_TRUE(none >= 1);
+}
+
+// The free space is closed: what just fits is the limit of what fits easily.
+static void what_just_fits_is_as_long_as_what_nearly_does(void) {
+    for (uint64_t seed = 801; seed < 801 + 5 * SEEDS; seed++) {
+        lattice_world(seed);
+        double just = length(0.5, 0.0, 0.0, 10.0, 9.5), nearly = length(0.5 - 1e-7, 0.0, 0.0, 10.0, 9.5);
+        TEST_ASSERT_TRUE(just == nearly || (nearly <= just && just < nearly + 1e-3));
+    }
+}
+
 // --- cells ---
 
 enum { WIDTH = 26, HEIGHT = 20 };
@@ -432,7 +536,7 @@ static const double resolution = 0.25;
 
 static void random_cells(uint64_t seed) {
     state = seed;
-    double density = uniform(0.03, 0.12);
+    double density = uniform(0.01, 0.12);
     for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
         occupied[i] = uniform(0.0, 1.0) < density;
     }
@@ -457,9 +561,9 @@ static size_t cells_as_polygons(void) {
 
 static void cells_and_squares_have_the_same_optimum(void) {
     unsigned found = 0, none = 0;
-    for (uint64_t seed = 501; seed < 501 + 3 * SEEDS; seed++) {
+    for (uint64_t seed = 501; seed < 501 + 10 * SEEDS; seed++) {
         random_cells(seed);
-        double radius = uniform(0.5, 2.2) * resolution;
+        double radius = uniform(0.5, 3.0) * resolution;
         double shrunk[4] = {radius, radius, WIDTH * resolution - radius, HEIGHT * resolution - radius};
         optimum_world *grid = optimum_grid(radius, resolution, WIDTH, HEIGHT, occupied);
         optimum_world *boxes = optimum_polygons(radius, shrunk, cells, cells_as_polygons());
@@ -511,6 +615,9 @@ int main(void) {
     RUN_TEST(a_disc_goes_round_a_square_by_arcs);
     RUN_TEST(a_slit_just_wide_enough_is_a_way_and_a_narrower_one_is_none);
     RUN_TEST(two_circles_that_touch_let_a_disc_through);
+    RUN_TEST(an_obstacle_near_an_arc_closes_it);
+    RUN_TEST(an_arc_is_used_up_to_where_it_is_closed);
+    RUN_TEST(each_side_of_the_bounds_stops_an_arc);
     RUN_TEST(the_bounds_stop_an_arc);
     RUN_TEST(an_end_too_near_an_obstacle_or_outside_is_told);
     RUN_TEST(every_random_path_is_free_and_as_long_as_told);
@@ -521,6 +628,8 @@ int main(void) {
     RUN_TEST(the_way_of_telling_an_obstacle_does_not_matter);
     RUN_TEST(a_point_passes_between_polygons_that_touch);
     RUN_TEST(an_upper_bound_changes_nothing_unless_it_is_wrong);
+    RUN_TEST(lattice_worlds_give_the_same_from_every_side);
+    RUN_TEST(what_just_fits_is_as_long_as_what_nearly_does);
     RUN_TEST(cells_and_squares_have_the_same_optimum);
     RUN_TEST(cells_know_walls_insides_and_the_rim);
     return UNITY_END();
