@@ -113,8 +113,8 @@ typedef enum aisle_counter {
     AISLE_COUNTER_VERIFY_INTERVALS, // intervals of motion the verifier looked at
     AISLE_COUNTER_WORK_UNITS,       // work units spent
     AISLE_COUNTER_OPEN_NODES_MAX,   // high-water mark of the grid search's open list
-    AISLE_COUNTER_CCD_CALLS,        // narrow-phase tests
-    AISLE_COUNTER_CCD_SUPPORT_MAX,  // most support calls of one narrow-phase test
+    AISLE_COUNTER_CCD_CALLS,        // narrow-phase tests that separating axes left to libccd
+    AISLE_COUNTER_CCD_SUPPORT_MAX,  // most support calls of one of them
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

@@ -11,6 +11,7 @@
 #define STRAY_STEP 1e-3                   // m, of piece_clearance: from straight ways
 #define STRAY_STEP_FREE 1e-4              // m, of piece_free
 #define OVERREACH_STEP 4e-3               // m, and of the hull beyond the sweep of a body that turns
+#define ROUGH 0.0625                      // of a gap that no objective cares about, what may be told too little
 #define PARTS_DEPTH_MAX 13U               // halvings of a piece, at most 4096 parts
 #define HALF_DIAGONAL 0.70710678118654752 // of a square of side 1
 
@@ -361,27 +362,45 @@ static bool is_known_clear(const aisle_space *self, const piece *p, double gap) 
     return around - self->vehicle->outer_radius - 0.5 * p->length >= gap;
 }
 
-// Branch and bound, halves in order: a part whose lower bound is not below what is known already, or so near to the gap
-// of a true placement that nothing more is to be learnt, is not cut.
+static void place_at(const aisle_space *self, piece *p, double f, uint32_t *units) {
+    p->most = aisle_min(p->most, aisle_space_gap(self, pose_at(p, f), p->most, NULL));
+    *units += 1U;
+}
+
+// Is there nothing more to be learnt from a part of this size and bound? From the creep clearance on no objective asks
+// for more than a rough number.
+static bool is_settled(const piece *p, double gap, double size, double creep) {
+    const double spare = STRAY_STEP + (p->beyond > 0.0 ? OVERREACH_STEP : 0.0);
+    return gap >= p->least || gap >= p->most - spare || (gap >= creep && gap >= (1.0 - ROUGH) * p->most) ||
+           is_fine(p, size, STRAY_STEP);
+}
+
+// Branch and bound, halves in order: a part whose lower bound is not below what is known already, or near enough to the
+// gap of a true placement, is not cut. The placements are the ends of the parts: mostly the nearest lies at one.
 static double least_over_parts(const aisle_space *self, piece *p, uint32_t *units) {
     double f0 = 0.0, ends[PARTS_DEPTH_MAX]; // of the parts ahead, the next on top
     uint32_t depth = 1;
-    const double spare = STRAY_STEP + (p->beyond > 0.0 ? OVERREACH_STEP : 0.0);
+    bool placed = false;
     ends[0] = 1.0;
     while (depth > 0U) {
         const double f1 = ends[depth - 1U];
         const double gap = part_clearance(self, p, f0, f1, p->least);
         *units += 1U;
-        if (gap >= p->least || gap >= p->most - spare || depth == PARTS_DEPTH_MAX || is_fine(p, f1 - f0, STRAY_STEP)) {
+        bool settled = depth == PARTS_DEPTH_MAX || is_settled(p, gap, f1 - f0, self->vehicle->creep_clearance);
+        if (!settled && !placed) {
+            place_at(self, p, 0.0, units);
+            place_at(self, p, 1.0, units);
+            placed = true;
+            settled = is_settled(p, gap, f1 - f0, self->vehicle->creep_clearance);
+        }
+        if (settled) {
             p->least = aisle_min(p->least, gap);
             f0 = f1;
             depth--;
-            continue;
+        } else {
+            ends[depth++] = 0.5 * (f0 + f1);
+            place_at(self, p, ends[depth - 1U], units);
         }
-        const double middle = 0.5 * (f0 + f1);
-        p->most = aisle_min(p->most, aisle_space_gap(self, pose_at(p, middle), p->most, NULL));
-        *units += 1U;
-        ends[depth++] = middle;
     }
     return p->least;
 }

@@ -87,7 +87,8 @@ double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
 // Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at
 // most 2 mm below the truth for discs and straight pieces, 6 mm where a polygon turns (the hull of two placements
-// reaches beyond the sweep by up to half the turn times the lever). The piece is halved only where the bound of a part
+// reaches beyond the sweep by up to half the turn times the lever), a sixteenth of it where that is creep_clearance or
+// more. The piece is halved only where the bound of a part
 // may lower the answer. O(parts * obstacles near), a unit for each exact gap.
 double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
                                    const aisle_waypoint_msg *to, uint32_t *units);

@@ -140,24 +140,32 @@ static void enter_bucket(aisle_layout_walk *walk) {
     walk->end = index->starts[bucket + 1U];
 }
 
-// Buckets pay off where they hold fewer entries than there are zones: looking at a zone's box is about half as much
-// work as entering a bucket.
+// A walk by the list of all zones: as one bucket that holds them all.
+static aisle_layout_walk walk_list(aisle_layout_walk walk) {
+    walk.by = 0;
+    walk.whole = true;
+    walk.end = aisle_layout_held(walk.layout)->zone_count;
+    return walk;
+}
+
+// Looking at a zone's box is about half as much work as entering a bucket.
 static bool is_list_shorter(const aisle_layout *self, aisle_bucket_range r) {
     const uint64_t buckets = (uint64_t)(r.x1 - r.x0 + 1U) * (r.y1 - r.y0 + 1U);
     return aisle_layout_held(self)->zone_count <= 2U * buckets;
 }
 
 aisle_layout_walk aisle_layout_walk_over(const aisle_layout *self, aisle_aabb box) {
+    enum { SHORT_LIST = 16 };                                       // as cheap as to ask for the buckets
     aisle_layout_walk walk = {.layout = self, .box = box, .by = 1}; // past by1: nothing to walk
     if (self->index.nx == 0 || !(box.lo.x <= box.hi.x && box.lo.y <= box.hi.y)) {
         return walk;
     }
+    if (aisle_layout_held(self)->zone_count <= SHORT_LIST) {
+        return walk_list(walk);
+    }
     const aisle_bucket_range r = aisle_layout_index_range(&self->index, box);
-    if (is_list_shorter(self, r)) { // as one bucket that lists every zone
-        walk.by = 0;
-        walk.whole = true;
-        walk.end = aisle_layout_held(self)->zone_count;
-        return walk;
+    if (is_list_shorter(self, r)) {
+        return walk_list(walk);
     }
     walk.bx0 = walk.bx = r.x0;
     walk.by0 = walk.by = r.y0;

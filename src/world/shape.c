@@ -98,20 +98,34 @@ static bool is_all_left_of(const aisle_convex *a, aisle_vec2 v, aisle_vec2 edge,
     return true;
 }
 
+// Lowers *best_sq to the least squared distance from b's vertices to the edge of a from v; *left: how far left of the
+// edge's line they reach, as cross products.
+static void measure_edge(const aisle_convex *b, aisle_vec2 v, aisle_vec2 edge, double *best_sq, double left[2]) {
+    const double inverse_sq = inverse_or_zero(aisle_vec2_dot(edge, edge));
+    left[0] = DBL_MAX;
+    left[1] = -DBL_MAX;
+    for (uint32_t k = 0; k < b->n; k++) {
+        const aisle_vec2 to = aisle_vec2_sub(b->v[k], v);
+        const double cross = aisle_vec2_cross(edge, to);
+        left[0] = aisle_min(left[0], cross);
+        left[1] = aisle_max(left[1], cross);
+        *best_sq = aisle_min(*best_sq, point_segment_sq(to, edge, inverse_sq));
+    }
+}
+
 // Lowers *best_sq to the least squared distance from b's vertices to a's edges; true if one of a's edges separates
-// them.
+// them. A lone point has no edge, and its distance is found from b's side; two points have one edge with two sides.
 static bool sweep_edges(const aisle_convex *a, const aisle_convex *b, double *best_sq) {
     bool apart = false;
-    for (uint32_t i = 0; i < a->n; i++) {
+    double left[2];
+    if (a->n == 2U) {
+        measure_edge(b, a->v[0], aisle_vec2_sub(a->v[1], a->v[0]), best_sq, left);
+        return left[0] > 0.0 || left[1] < 0.0;
+    }
+    for (uint32_t i = 0; a->n > 2U && i < a->n; i++) {
         const aisle_vec2 edge = aisle_vec2_sub(a->v[i + 1U < a->n ? i + 1U : 0U], a->v[i]);
-        const double inverse_sq = inverse_or_zero(aisle_vec2_dot(edge, edge));
-        double most_left = -DBL_MAX;
-        for (uint32_t k = 0; k < b->n; k++) {
-            const aisle_vec2 to = aisle_vec2_sub(b->v[k], a->v[i]);
-            most_left = aisle_max(most_left, aisle_vec2_cross(edge, to));
-            *best_sq = aisle_min(*best_sq, point_segment_sq(to, edge, inverse_sq));
-        }
-        apart = apart || (most_left < 0.0 && is_all_left_of(a, a->v[i], edge, most_left));
+        measure_edge(b, a->v[i], edge, best_sq, left);
+        apart = apart || (left[1] < 0.0 && is_all_left_of(a, a->v[i], edge, left[1]));
     }
     return apart;
 }

@@ -148,8 +148,7 @@ static void test_a_query_is_answered_by_a_path_that_keeps_the_margin(void) {
     query.options.objective = AISLE_OPTIONS_SHORTEST;
     door_judge(door_ask(&query));
     TEST_ASSERT_TRUE(count(AISLE_COUNTER_NODES) > 0 && count(AISLE_COUNTER_SWARM_EVALS) > 0 &&
-                     count(AISLE_COUNTER_CCD_CALLS) > 0 && count(AISLE_COUNTER_VERIFY_INTERVALS) > 0 &&
-                     count(AISLE_COUNTER_OPEN_NODES_MAX) > 0 && count(AISLE_COUNTER_CCD_SUPPORT_MAX) > 0);
+                     count(AISLE_COUNTER_VERIFY_INTERVALS) > 0 && count(AISLE_COUNTER_OPEN_NODES_MAX) > 0);
 }
 
 static void test_a_layout_in_parts_is_in_force_when_the_last_one_is_in(void) {

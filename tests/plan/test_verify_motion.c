@@ -9,6 +9,7 @@ static void assert_collision(int32_t id, uint32_t waypoint) {
     TEST_ASSERT_EQUAL(AISLE_VERIFY_COLLISION, verify.fault);
     TEST_ASSERT_EQUAL_INT32(id, verify.fault_id);
     TEST_ASSERT_EQUAL_UINT32(waypoint, verify.fault_waypoint);
+    TEST_ASSERT_TRUE(id == AISLE_LAYOUT_ID_BOUNDS || verify.collide.calls > 0); // axes part, but libccd condemns
 }
 
 // ---- random worlds, vehicles, paths

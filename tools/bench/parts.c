@@ -1,8 +1,14 @@
-// Times of the parts, as DESIGN.md tells them: build/release/bench-parts. Each figure is the best of five rounds.
+// Times of the parts, as DESIGN.md tells them: build/release/bench-parts [LOG...]. Each figure is the best of seven
+// rounds. Of a log, the layout in it is loaded (tools/bench/load_table.py makes such logs).
+//
+// Peer of the load: the bare distance transform of the very same grid, two passes after Meijster, Roerdink & Hesselink
+// 2000, in 32 bits, in one go; its values must be the field's.
 #include "algo/astar.h"
 #include "base/angle.h"
 #include "base/crc32.h"
 #include "base/rng.h"
+#include "daemon/channel.h"
+#include "replay/log.h"
 #include "wire/codec.h"
 #include "world/collide.h"
 #include "world/layout.h"
@@ -12,7 +18,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { ROUNDS = 5, SIDE = 2048, BLOCK = 96 << 20 };
+enum { ROUNDS = 7, SIDE = 2048, BLOCK = 96 << 20 };
 
 static aisle_layout layout;
 static aisle_layout_msg part;
@@ -62,17 +68,178 @@ static void make_shelves(void) {
     part.total_polygons = part.num_polygons;
 }
 
-static void build_layout(uint32_t i) {
+// ---- the peer
+
+static uint8_t *occupied; // [cells]
+static int32_t *bare;     // [cells] squared distances
+static int32_t *at,
+    *from_col; // [w + 2] columns of the parabolas that make the envelope of a row, and where each begins
+
+static void pass_columns(int32_t w, int32_t h) {
+    for (int32_t y = 0; y < h; y++) {
+        int32_t *row = bare + (ptrdiff_t)y * w;
+        const uint8_t *cells = occupied + (ptrdiff_t)y * w;
+        for (int32_t x = 0; x < w; x++) {
+            int32_t above = y > 0 ? row[x - w] : 0; // the outside is occupied
+            row[x] = cells[x] != 0 ? 0 : above + 1;
+        }
+    }
+    for (int32_t y = h - 1; y >= 0; y--) {
+        int32_t *row = bare + (ptrdiff_t)y * w;
+        for (int32_t x = 0; x < w; x++) {
+            int32_t below = (y + 1 < h ? row[x + w] : 0) + 1;
+            row[x] = below < row[x] ? below : row[x];
+        }
+    }
+}
+
+static int32_t column_sq(const int32_t *row, int32_t w, int32_t x) {
+    return x < 0 || x >= w ? 0 : row[x] * row[x];
+}
+
+static int32_t floor_div(int32_t n, int32_t d) {
+    return n >= 0 ? n / d : -((-n + d - 1) / d);
+}
+
+// Lower envelope of the parabolas of one row's columns, the two outside ones counted: the left one has no
+// rival that could drop it. copy: the row before. 32 bits do for sides up to 30000.
+static void pass_row(int32_t *row, const int32_t *copy, int32_t w) {
+    int32_t n = 0;
+    at[0] = -1;
+    from_col[0] = -1;
+    for (int32_t u = 0; u <= w; u++) {
+        int32_t sq = column_sq(copy, w, u), begin = 0;
+        for (; n >= 0; n--) {
+            int32_t s = at[n], d = u - s;
+            begin = floor_div(u * u - s * s + sq - column_sq(copy, w, s), 2 * d) + 1;
+            if (begin > from_col[n]) {
+                break;
+            }
+        }
+        if (begin < w) {
+            n++;
+            at[n] = u;
+            from_col[n] = begin;
+        }
+    }
+    for (int32_t x = w - 1; x >= 0; x--) {
+        while (from_col[n] > x) {
+            n--;
+        }
+        row[x] = (x - at[n]) * (x - at[n]) + column_sq(copy, w, at[n]);
+    }
+}
+
+static void bare_transform(uint32_t i) {
     (void)i;
+    static int32_t copy[AISLE_GRID_SIDE_MAX];
+    const int32_t w = (int32_t)layout.grid.lattice.w, h = (int32_t)layout.grid.lattice.h;
+    pass_columns(w, h);
+    for (int32_t y = 0; y < h; y++) {
+        int32_t *row = bare + (ptrdiff_t)y * w;
+        memcpy(copy, row, (size_t)w * sizeof *copy);
+        pass_row(row, copy, w);
+    }
+}
+
+// ---- loads
+
+static void commit_and_build(uint32_t i) {
+    (void)i;
+    aisle_layout_commit(&layout);
+    while (aisle_layout_build(&layout, 1U << 20) == AISLE_BUSY) {
+    }
+}
+
+// Times a load beside the peer on its grid. `send` stages the layout once more, as a new revision.
+static void print_load(const char *name, void (*send)(void)) {
+    double taken = 1e9, built = 1e9;
+    for (int round = 0; round < ROUNDS; round++) {
+        double from = seconds();
+        send();
+        double sent = seconds();
+        commit_and_build(0);
+        double end = seconds();
+        taken = sent - from < taken ? sent - from : taken;
+        built = end - sent < built ? end - sent : built;
+    }
+    const uint32_t cells = layout.grid.lattice.w * layout.grid.lattice.h;
+    for (uint32_t c = 0; c < cells; c++) {
+        occupied[c] = layout.grid.field[c] == 0;
+    }
+    double peer = best_of(bare_transform, 1);
+    for (uint32_t c = 0; c < cells; c++) {
+        if ((uint32_t)layout.grid.field[c] !=
+            ((uint32_t)bare[c] < AISLE_FIELD_SQ_MAX ? (uint32_t)bare[c] : AISLE_FIELD_SQ_MAX)) {
+            (void)fprintf(stderr, "%s: cell %u: field %u, bare transform %d\n", name, (unsigned)c,
+                          (unsigned)layout.grid.field[c], (int)bare[c]);
+            abort();
+        }
+    }
+    (void)printf(
+        "load %-28s %5u x %-5u  %7.2f ms, %4.1f ns a cell; bare transform %7.2f ms, ratio %.2f; parts %6.2f ms\n", name,
+        (unsigned)layout.grid.lattice.w, (unsigned)layout.grid.lattice.h, 1e3 * built, 1e9 * built / (double)cells,
+        1e3 * peer, built / peer, 1e3 * taken);
+}
+
+static void send_shelves(void) {
     aisle_refusal why;
     part.map_revision++;
     if (aisle_layout_take_part(&layout, &part, &why) != AISLE_OK) {
         abort();
     }
-    aisle_layout_commit(&layout);
-    while (aisle_layout_build(&layout, 1U << 20) == AISLE_BUSY) {
+}
+
+static FILE *log_file;
+static int32_t log_revision;
+
+// Every part and tile in the log; all of them together complete the layout.
+static void send_log(void) {
+    static aisle_log_reader reader;
+    static aisle_layout_msg a_part;
+    static aisle_grid_chunk_msg a_tile;
+    aisle_log_event event;
+    aisle_refusal why;
+    aisle_status st = AISLE_PARTIAL;
+    log_revision++;
+    if (!aisle_log_open(&reader, log_file)) {
+        abort();
+    }
+    while (aisle_log_next(&reader, &event)) {
+        aisle_channel channel = aisle_channel_find("AISLE", event.channel, event.channel_length);
+        if (channel == AISLE_CHANNEL_LAYOUT &&
+            aisle_msg_decode(AISLE_MSG_LAYOUT, event.bytes, event.size, &a_part, NULL) == AISLE_OK) {
+            a_part.map_id = 2;
+            a_part.map_revision = log_revision;
+            st = aisle_layout_take_part(&layout, &a_part, &why);
+        } else if (channel == AISLE_CHANNEL_GRID &&
+                   aisle_msg_decode(AISLE_MSG_GRID_CHUNK, event.bytes, event.size, &a_tile, NULL) == AISLE_OK) {
+            a_tile.map_id = 2;
+            a_tile.map_revision = log_revision;
+            st = aisle_layout_take_tile(&layout, &a_tile, &why);
+        }
+    }
+    if (st != AISLE_OK || !aisle_layout_is_staged(&layout)) {
+        (void)fprintf(stderr, "no whole layout in the log: %d\n", (int)st);
+        exit(1);
     }
 }
+
+static void print_loads(int count, char **logs) {
+    print_load("300 shelves", send_shelves);
+    for (int i = 0; i < count; i++) {
+        log_file = fopen(logs[i], "rb");
+        if (log_file == NULL) {
+            (void)fprintf(stderr, "%s: cannot be read\n", logs[i]);
+            exit(1);
+        }
+        const char *slash = strrchr(logs[i], '/');
+        print_load(slash != NULL ? slash + 1 : logs[i], send_log);
+        (void)fclose(log_file);
+    }
+}
+
+// ---- the rest
 
 static void one_gap(uint32_t i) {
     double x = 1.0 + 0.01 * (double)(i % 9000U);
@@ -117,9 +284,16 @@ static void one_sincos(uint32_t i) {
     turned += s + c;
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     void *block;
     if (posix_memalign(&block, AISLE_ARENA_ALIGN, BLOCK) != 0) {
+        return 1;
+    }
+    occupied = malloc((size_t)SIDE * SIDE * sizeof *occupied);
+    bare = malloc((size_t)SIDE * SIDE * sizeof *bare);
+    at = malloc((AISLE_GRID_SIDE_MAX + 2U) * sizeof *at);
+    from_col = malloc((AISLE_GRID_SIDE_MAX + 2U) * sizeof *from_col);
+    if (occupied == NULL || bare == NULL || at == NULL || from_col == NULL) {
         return 1;
     }
     aisle_arena arena = aisle_arena_over(block, BLOCK);
@@ -128,9 +302,9 @@ int main(void) {
     aisle_layout_carve(&layout, &arena, &limits);
     aisle_astar_carve(&search, &arena, limits.cells, limits.open_nodes);
     make_shelves();
-    double load = best_of(build_layout, 3);
-    (void)printf("layout load, 300 shelves, %d x %d cells  %7.2f ms, %.1f ns a cell\n", SIDE, SIDE, 1e3 * load,
-                 1e9 * load / ((double)SIDE * (double)SIDE));
+    print_loads(argc - 1, argv + 1);
+    send_shelves();
+    commit_and_build(0);
     (void)printf("exact gap of a footprint, cap 0.5 m        %7.2f us\n", 1e6 * best_of(one_gap, 100000));
     (void)printf("narrow-phase test                          %7.2f us\n", 1e6 * best_of(one_contact, 100000));
     double found = best_of(one_search, 1);
@@ -142,5 +316,9 @@ int main(void) {
     (void)printf("decoding a layout_t of %6zu bytes         %7.1f us\n", encoded, 1e6 * best_of(one_decode, 1000));
     (void)printf("sine and cosine                            %7.1f ns\n", 1e9 * best_of(one_sincos, 1000000));
     free(block);
+    free(occupied);
+    free(bare);
+    free(at);
+    free(from_col);
     return turned > 1e12 ? 1 : 0;
 }
