@@ -1,13 +1,15 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_seed.c: CHECK, SEED, TAUT, WHY. route_proof.c: BUILD, VERIFY,
-// SWARM.
+// route.c: memory, budget, the order of stages. route_check.c: CHECK. route_seed.c: SEED, TAUT. route_why.c: WHY.
+// route_proof.c: BUILD, VERIFY, SWARM.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
 #define AISLE_PLAN_ROUTE_STAGES_H
 
 #include "plan/route.h"
+
+#define AISLE_ROUTE_ATTEMPTS_CHEAP 2U // at a seed, before the proof of WHY, see route.h
 
 // Where a stop is; where a leg begins.
 static inline aisle_vec2 aisle_route_place(const aisle_goal_msg *goal) {
@@ -32,19 +34,27 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
     return aisle_route_refuse(self, cause, id, value);
 }
 
-// Begin the first leg; the seed of the leg under way with the n-th attempt; go on to the next leg or to BUILD.
-void aisle_route_begin_legs(aisle_route *self);
-void aisle_route_begin_seed(aisle_route *self, uint32_t n);
-void aisle_route_next_leg(aisle_route *self);
+// route_check.c
+aisle_status aisle_route_check(aisle_route *self);
 
 // route_tangent.c
 void aisle_route_begin_tangent(aisle_route *self);
 aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units);
 
 // route_seed.c
-aisle_status aisle_route_check(aisle_route *self);
+
+// Begin the first leg; go on to the next leg or to BUILD.
+void aisle_route_begin_legs(aisle_route *self);
+void aisle_route_next_leg(aisle_route *self);
+// Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
+void aisle_route_begin_seed(aisle_route *self, uint32_t n);
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
+
+// route_why.c
+
+// Asks why there is no seed for the leg under way; stride: cells, of the searches for width.
+void aisle_route_begin_why(aisle_route *self, uint32_t stride);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
 
 // route_proof.c

@@ -1,0 +1,60 @@
+#include "plan/route_stages.h"
+
+static bool options_are_known(const aisle_options_msg *options) {
+    bool planner = options->planner == AISLE_OPTIONS_AUTO || options->planner == AISLE_OPTIONS_PSO ||
+                   options->planner == AISLE_OPTIONS_ASTAR;
+    bool interpolation =
+        options->interpolation == AISLE_OPTIONS_SPLINE || options->interpolation == AISLE_OPTIONS_LINEAR;
+    return planner && interpolation && options->risk_weight >= 0.0F && options->work_units >= 0 &&
+           options->num_samples >= 0;
+}
+
+static bool in_bounds(const aisle_route *self, aisle_vec2 p) {
+    aisle_aabb bounds = aisle_layout_bounds(self->layout);
+    return p.x >= bounds.lo.x && p.x <= bounds.hi.x && p.y >= bounds.lo.y && p.y <= bounds.hi.y;
+}
+
+// Gap of the body at a stop: of the footprint, or of the disc it holds where the heading is free.
+static double stop_gap(const aisle_route *self, const aisle_goal_msg *stop, int32_t *id) {
+    double cap = self->vehicle->margin + 1.0;
+    if (!aisle_goal_heading_is_free(stop)) {
+        return aisle_space_gap(&self->space, (aisle_pose2){stop->x, stop->y, stop->theta}, cap, id);
+    }
+    aisle_vec2 p = aisle_route_place(stop);
+    aisle_convex disc = {&p, 1U, self->vehicle->inner_radius};
+    return aisle_layout_gap(self->layout, &disc, cap, id);
+}
+
+static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bool is_start) {
+    aisle_vec2 p = aisle_route_place(stop);
+    if (!in_bounds(self, p)) {
+        int16_t outside = is_start ? AISLE_STATUS_POSE_OUTSIDE : AISLE_STATUS_GOAL_OUTSIDE;
+        return aisle_route_refuse_at(self, outside, stop->id, 0.0, p);
+    }
+    int32_t id = 0;
+    double gap = stop_gap(self, stop, &id);
+    self->spent += 1U;
+    if (gap < self->vehicle->margin + AISLE_SPACE_SLACK) {
+        int16_t occupied = is_start ? AISLE_STATUS_START_OCCUPIED : AISLE_STATUS_GOAL_OCCUPIED;
+        return aisle_route_refuse_at(self, occupied, id, self->vehicle->margin + AISLE_SPACE_SLACK - gap, p);
+    }
+    return AISLE_BUSY;
+}
+
+aisle_status aisle_route_check(aisle_route *self) {
+    const aisle_request *request = &self->request;
+    if (!options_are_known(&request->options) ||
+        !aisle_objective_of(&request->options, self->vehicle, &self->objective)) {
+        return aisle_route_refuse(self, AISLE_STATUS_MALFORMED, request->options.planner,
+                                  (double)request->options.objective);
+    }
+    aisle_space_begin(&self->space, self->layout, self->vehicle, AISLE_SPACE_FREE_TURN);
+    aisle_status st = check_stop(self, &request->start, true);
+    for (int16_t i = 0; i < request->num_goals && st == AISLE_BUSY; i++) {
+        st = check_stop(self, &request->goals[i], false);
+    }
+    if (st == AISLE_BUSY) {
+        aisle_route_begin_legs(self);
+    }
+    return st;
+}
