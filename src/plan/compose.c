@@ -107,7 +107,8 @@ static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
     aisle_curve_goal(curve, goal->id);
 }
 
-bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, uint32_t *units) {
+bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, double need,
+                            uint32_t *units) {
     self->request = *request;
     const aisle_leg *leg = &request->legs[i];
     const aisle_vec2 *p = request->points + leg->first;
@@ -117,7 +118,6 @@ bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *re
     aisle_curve_polyline(&curve, p, leg->count, &rule);
     bool free = !curve.overflow;
     for (uint32_t k = 1; free && k < curve.n; k++) {
-        const double need = request->space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
         free = aisle_space_piece_free(request->space, &curve.w[k - 1U], &curve.w[k], need, units);
     }
     return free;

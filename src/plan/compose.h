@@ -51,10 +51,11 @@ typedef struct aisle_compose {
 
 void aisle_compose_carve(aisle_compose *self, aisle_arena *arena);
 
-// Is the seed of leg i, its corners arcs of its tangent_radius, free for the body with its heading along the way? "Yes"
+// Does the body keep `need` (m) on the seed of leg i, its corners arcs of its tangent_radius, its heading along the way? "Yes"
 // is sure but for what comes before and after the leg. Between a start() and the last step() it spoils the path. Adds
 // its work to *units: O(pieces * obstacles near), not sliced.
-bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, uint32_t *units);
+bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, double need,
+                            uint32_t *units);
 
 // Begins: lays the geometry. AISLE_ERR_CAPACITY: more waypoints than a path_t holds.
 aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path);

@@ -184,7 +184,7 @@ static void end_route(aisle_planner *self) {
     if (answer == NULL) {
         aisle_planner_refuse(self, &route->request, &route->cause, route->has_place ? &route->place : NULL,
                              route->spent);
-    } else if (route->request.is_query || answer != &route->first || !route->announced) {
+    } else if (route->request.is_query || !answer->told) {
         aisle_planner_publish(self, &route->request, answer);
     }
 }
@@ -199,7 +199,7 @@ static void step_route(aisle_planner *self, uint32_t units) {
     if (st == AISLE_OK) {
         end_route(self);
     } else if (st == AISLE_PARTIAL && !self->route->request.is_query) {
-        aisle_planner_publish(self, &self->route->request, &self->route->first);
+        aisle_planner_publish(self, &self->route->request, &self->route->best);
     }
 }
 

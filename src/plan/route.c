@@ -20,8 +20,8 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
     self->legs = (aisle_leg *)aisle_arena_take(arena, AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_leg));
     self->path = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
     self->decoded = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
-    self->first.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
-    self->better.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    self->best.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    self->spare.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
 }
 
 // Header of the answer: everything but waypoints and sums.
@@ -30,7 +30,7 @@ static void copy_head(aisle_route *self, const aisle_path_msg *head) {
     const aisle_request *request = &self->request;
     path->utime = head->utime;
     path->boot_id = head->boot_id;
-    path->path_revision = head->path_revision;
+    self->revision = head->path_revision;
     path->t0_utime = head->t0_utime;
     path->valid_until_utime = head->valid_until_utime;
     path->obstacles_utime = head->obstacles_utime;
@@ -59,8 +59,8 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->stage = AISLE_ROUTE_CHECK;
     self->leg = 0;
     self->point_count = 0;
-    self->first.ready = false;
-    self->better.ready = false;
+    self->best.ready = self->best.told = false;
+    self->spare.ready = self->spare.told = false;
     self->stops = false;
     self->is_wide = false;
     self->announced = false;
@@ -95,6 +95,11 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_swarm(self, units);
     case AISLE_ROUTE_WHY:
         return aisle_route_step_why(self, units);
+    case AISLE_ROUTE_NEXT:
+        return aisle_route_next_way(self);
+    case AISLE_ROUTE_DROP:
+        return aisle_route_give_way_up(self, AISLE_STATUS_KINEMATIC, 0, 0.0,
+                                       aisle_route_place(&self->request.goals[self->leg]));
     default:
         return AISLE_OK;
     }
@@ -106,7 +111,9 @@ aisle_status aisle_route_step(aisle_route *self, uint32_t units) {
     while (st == AISLE_BUSY && self->spent < until) {
         if (self->spent >= self->budget) {
             self->stage = AISLE_ROUTE_END;
-            st = self->first.ready ? AISLE_OK : aisle_route_refuse(self, AISLE_STATUS_BUDGET, 0, (double)self->budget);
+            st = aisle_route_answer(self) != NULL
+                     ? AISLE_OK
+                     : aisle_route_refuse(self, AISLE_STATUS_BUDGET, 0, (double)self->budget);
             break;
         }
         uint32_t left =
@@ -117,8 +124,5 @@ aisle_status aisle_route_step(aisle_route *self, uint32_t units) {
 }
 
 const aisle_proof *aisle_route_answer(const aisle_route *self) {
-    if (self->better.ready) {
-        return &self->better;
-    }
-    return self->first.ready ? &self->first : NULL;
+    return self->best.ready ? &self->best : NULL;
 }

@@ -45,9 +45,22 @@ typedef struct aisle_proof { // an encoded path and what it is worth
     uint8_t *bytes;          // [AISLE_ROUTE_BYTES]
     size_t size;
     aisle_stamp stamp;
-    double value; // by the objective, less is better
+    double value; // by the request's objective, less is better
     bool ready;
+    bool told; // announced before the end
 } aisle_proof;
+
+// A way to plan a request; an objective may try several and keep the best by its own measure (route_ways.c).
+typedef enum aisle_way_kind {
+    AISLE_WAY_SHORT, // exactly, by the tangent search, at the margin
+    AISLE_WAY_CLEAR, // the same at the creep clearance, where that is possible; else as GRID
+    AISLE_WAY_GRID   // by the grid's search
+} aisle_way_kind;
+
+typedef struct aisle_way {
+    aisle_way_kind kind;
+    int8_t objective; // whose density the grid, the taut string and the swarm go by
+} aisle_way;
 
 typedef enum aisle_route_stage {
     AISLE_ROUTE_IDLE,
@@ -59,6 +72,8 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_VERIFY,
     AISLE_ROUTE_SWARM,
     AISLE_ROUTE_WHY,
+    AISLE_ROUTE_NEXT, // the way under way is done with
+    AISLE_ROUTE_DROP, // or leads nowhere
     AISLE_ROUTE_END
 } aisle_route_stage;
 
@@ -66,7 +81,10 @@ typedef struct aisle_route {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
     aisle_request request;
-    aisle_objective objective;
+    const aisle_way *way; // under way
+    uint32_t way_index;
+    aisle_objective objective; // of the way
+    double room;               // m, that its tangent searches keep to obstacles
     aisle_space space;
     aisle_tangent tangent;
     uint32_t tangent_search; // which one, see route_tangent.c
@@ -79,12 +97,13 @@ typedef struct aisle_route {
     aisle_why why;
     aisle_vec2 *points; // [AISLE_ROUTE_POINTS]
     uint32_t point_count;
-    aisle_leg *legs;           // [AISLE_GOAL_LIST_MAX_GOALS]
-    uint32_t leg;              // under way
-    aisle_path_msg *path;      // being composed
-    aisle_path_msg *decoded;   // the verifier's
-    aisle_proof first, better; // the answer is better if ready, else first if ready
-    aisle_proof *trial;        // where the path being verified goes
+    aisle_leg *legs;         // [AISLE_GOAL_LIST_MAX_GOALS]
+    uint32_t leg;            // under way
+    aisle_path_msg *path;    // being composed
+    aisle_path_msg *decoded; // the verifier's
+    aisle_proof best;        // of the ways so far
+    aisle_proof spare;       // what is tried against it
+    int32_t revision;        // of the first path told
     aisle_route_stage stage;
     bool stops;                          // build with a stop in every corner
     bool is_wide;                        // tight ways (route_tangent.c) failed
@@ -101,11 +120,12 @@ typedef struct aisle_route {
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 
 // Begins. `head` holds the ids and times of the answer (boot_id, revisions, t0_utime, ...); its waypoints are not read.
-// path_revision of the first path is head's, of the improved one the next.
+// path_revision of the first path told is head's, of the improved one the next.
 void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        const aisle_request *request, const aisle_path_msg *head);
 
-// Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: `first` has just become ready, a better one may follow (told once);
+// Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: there is an answer already, and what may better it takes long (told
+// once);
 // AISLE_OK: ended: aisle_route_answer() or cause.
 aisle_status aisle_route_step(aisle_route *self, uint32_t units);
 

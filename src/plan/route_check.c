@@ -54,7 +54,7 @@ aisle_status aisle_route_check(aisle_route *self) {
         st = check_stop(self, &request->goals[i], false);
     }
     if (st == AISLE_BUSY) {
-        aisle_route_begin_legs(self);
+        aisle_route_begin_ways(self);
     }
     return st;
 }

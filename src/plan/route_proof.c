@@ -8,11 +8,20 @@
 
 // ---- BUILD, VERIFY
 
-void aisle_route_begin_build(aisle_route *self, aisle_proof *trial) {
-    self->trial = trial;
+void aisle_route_begin_build(aisle_route *self) {
+    self->path->path_revision = self->revision + (self->announced ? 1 : 0);
     self->leg = 0;
     self->stage = AISLE_ROUTE_BUILD;
     self->compose.path = NULL; // not begun
+}
+
+static bool any_swarm_leg(const aisle_route *self) {
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        if (self->legs[i].use_swarm) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static double length_bound(const aisle_route *self) {
@@ -25,12 +34,11 @@ static double length_bound(const aisle_route *self) {
 
 static void seal(aisle_route *self) {
     aisle_path_msg *path = self->path;
-    bool swarm = self->trial == &self->better;
-    path->planner = swarm ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
+    path->planner = any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
     path->work_units = (int32_t)self->spent;
     float bound = (float)(length_bound(self) * (1.0 - 1e-6));
     path->length_bound = bound < path->length ? bound : path->length;
-    aisle_status st = aisle_path_encode(path, self->trial->bytes, AISLE_ROUTE_BYTES, &self->trial->size);
+    aisle_status st = aisle_path_encode(path, self->spare.bytes, AISLE_ROUTE_BYTES, &self->spare.size);
     AISLE_ASSERT(st == AISLE_OK);
 }
 
@@ -41,8 +49,8 @@ static void begin_verify(aisle_route *self) {
     bool any = aisle_goal_heading_is_free(start);
     aisle_verify_request request = {.layout = self->layout,
                                     .vehicle = self->vehicle,
-                                    .bytes = self->trial->bytes,
-                                    .size = self->trial->size,
+                                    .bytes = self->spare.bytes,
+                                    .size = self->spare.size,
                                     .start = {start->x, start->y, any ? w[0].theta : start->theta},
                                     .goals = self->request.goals,
                                     .num_goals = (uint32_t)self->request.num_goals};
@@ -52,21 +60,21 @@ static void begin_verify(aisle_route *self) {
 
 // The way built could not be proved or does not fit: what next?
 static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisle_vec2 place) {
-    if (self->trial == &self->better) {
-        self->stage = AISLE_ROUTE_END; // the first path stays
-        return AISLE_OK;
+    bool tight = self->way->kind != AISLE_WAY_GRID && !self->is_wide && !aisle_vehicle_is_disc(self->vehicle);
+    if (any_swarm_leg(self)) { // the way without it was proved before
+        return aisle_route_next_way(self);
     }
-    if (!self->is_wide && aisle_objective_is_length(&self->objective) && !aisle_vehicle_is_disc(self->vehicle)) {
-        self->is_wide = true; // tight ways did not work out: again, for the disc in which the body turns
+    if (tight) { // tight ways did not work out: again, for the disc in which the body turns
+        self->is_wide = true;
         aisle_route_begin_legs(self);
         return AISLE_BUSY;
     }
-    if (!self->stops && self->vehicle->curvature_max <= 0.0) {
+    if (!self->stops && self->vehicle->curvature_max <= 0.0 && aisle_route_answer(self) == NULL) {
         self->stops = true;
-        aisle_route_begin_build(self, &self->first);
+        aisle_route_begin_build(self);
         return AISLE_BUSY;
     }
-    return aisle_route_refuse_at(self, cause, id, 0.0, place);
+    return aisle_route_give_way_up(self, cause, id, 0.0, place);
 }
 
 aisle_compose_request aisle_route_build_request(aisle_route *self) {
@@ -78,7 +86,7 @@ aisle_compose_request aisle_route_build_request(aisle_route *self) {
                                    .leg_count = (uint32_t)self->request.num_goals,
                                    .start = &self->request.start,
                                    .goals = self->request.goals,
-                                   .stops = self->stops && self->trial == &self->first};
+                                   .stops = self->stops};
 }
 
 aisle_status aisle_route_step_build(aisle_route *self, uint32_t units) {
@@ -100,46 +108,37 @@ aisle_status aisle_route_step_build(aisle_route *self, uint32_t units) {
     return AISLE_BUSY;
 }
 
-// What the path built is worth: what the objective means in full, stops and acceleration included, where the path's
-// sums tell.
-static double path_value(const aisle_route *self) {
-    switch (self->objective.kind) {
-    case AISLE_OPTIONS_FASTEST:
-        return (double)self->path->duration;
-    case AISLE_OPTIONS_LEAST_ENERGY:
-        return (double)self->path->energy;
-    default:
-        break;
-    }
-    double value = 0.0;
-    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
-        const aisle_leg *leg = &self->legs[i];
-        value += leg->use_swarm ? leg->swarm_value : leg->seed_value;
-    }
-    return value;
-}
-
 static void begin_swarm_leg(aisle_route *self);
 
-static aisle_status after_first_proof(aisle_route *self) {
-    self->proof_units = self->spent;
-    // A disc's taut string cannot be beaten on length: AUTO leaves the swarm to other bodies (which it held to the
-    // turning disc) and other objectives.
-    bool taut_is_best = self->request.options.planner == AISLE_OPTIONS_AUTO &&
-                        aisle_objective_is_length(&self->objective) &&
-                        (aisle_vehicle_is_disc(self->vehicle) ||
-                         (double)self->path->length <= length_bound(self) * (1.0 + WORTH_A_SWARM));
-    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops) {
-        self->stage = AISLE_ROUTE_END;
-        return AISLE_OK;
+// Is there nothing on this way that a swarm could improve?
+static bool is_settled(const aisle_route *self) {
+    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->stops) {
+        return true;
+    }
+    if (self->request.options.planner == AISLE_OPTIONS_PSO) {
+        return false;
+    }
+    if (aisle_objective_is_length(&self->objective)) { // a disc's taut string cannot be beaten on length
+        return self->request.options.objective != AISLE_OPTIONS_SHORTEST || aisle_vehicle_is_disc(self->vehicle) ||
+               (double)self->path->length <= length_bound(self) * (1.0 + WORTH_A_SWARM);
+    }
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        if (!self->legs[i].is_clear) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The seeds of a way are proved: the swarm's turn, or the next way's.
+static aisle_status after_seed_proof(aisle_route *self) {
+    self->proof_units = self->proof_units > 0U ? self->proof_units : self->spent;
+    if (is_settled(self)) {
+        return aisle_route_next_way(self);
     }
     self->leg = 0;
     begin_swarm_leg(self);
-    if (!self->announced) {
-        self->announced = true;
-        return AISLE_PARTIAL;
-    }
-    return AISLE_BUSY;
+    return self->stage == AISLE_ROUTE_SWARM ? aisle_route_announce(self) : AISLE_BUSY;
 }
 
 // Leg the waypoint belongs to, by the goals passed before it.
@@ -151,34 +150,22 @@ static uint32_t leg_of_waypoint(const aisle_route *self, uint32_t waypoint) {
     return leg;
 }
 
-static bool any_swarm_leg(const aisle_route *self) {
-    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
-        if (self->legs[i].use_swarm) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// Builds the better path again, or ends if no leg is left to the swarm.
-static aisle_status rebuild_better(aisle_route *self) {
+// Builds the swarm's path again, or goes on if no leg is left to it.
+static aisle_status rebuild(aisle_route *self) {
     if (!any_swarm_leg(self)) {
-        self->stage = AISLE_ROUTE_END;
-        return AISLE_OK;
+        return aisle_route_next_way(self);
     }
-    aisle_route_begin_build(self, &self->better);
+    aisle_route_begin_build(self);
     return AISLE_BUSY;
 }
 
 static aisle_status disproved(aisle_route *self) {
     self->verify_failed++;
     const aisle_verify *verify = &self->verify;
-    if (self->trial == &self->better) {
-        aisle_leg *leg = &self->legs[leg_of_waypoint(self, verify->fault_waypoint)];
-        if (leg->use_swarm) {
-            leg->use_swarm = false;
-            return rebuild_better(self);
-        }
+    aisle_leg *leg = &self->legs[leg_of_waypoint(self, verify->fault_waypoint)];
+    if (leg->use_swarm) {
+        leg->use_swarm = false;
+        return rebuild(self);
     }
     bool body = verify->fault == AISLE_VERIFY_COLLISION || verify->fault == AISLE_VERIFY_CURVATURE ||
                 verify->fault == AISLE_VERIFY_HEADING || verify->fault == AISLE_VERIFY_START ||
@@ -187,10 +174,11 @@ static aisle_status disproved(aisle_route *self) {
     return fall_back(self, cause, body ? verify->fault_id : (int32_t)verify->fault, verify->fault_at);
 }
 
-// The better path is proved; legs that came out worse than their seeds go back to them, once.
-static aisle_status after_better_proof(aisle_route *self) {
+// The swarm's path is proved; legs that came out worse than their seeds go back to them, once.
+static aisle_status after_swarm_proof(aisle_route *self) {
     bool worse = false;
     bool by_name = self->request.options.planner == AISLE_OPTIONS_PSO;
+    aisle_route_judge(self, by_name);
     for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
         aisle_leg *leg = &self->legs[i];
         if (leg->use_swarm && !by_name && leg->swarm_value > leg->seed_value) {
@@ -198,16 +186,11 @@ static aisle_status after_better_proof(aisle_route *self) {
             worse = true;
         }
     }
-    if (worse) {
-        return rebuild_better(self);
-    }
-    self->better.ready = by_name || self->better.value <= self->first.value;
-    self->stage = AISLE_ROUTE_END;
-    return AISLE_OK;
+    return worse ? rebuild(self) : aisle_route_next_way(self);
 }
 
 aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
-    aisle_status st = aisle_verify_step(&self->verify, units, &self->spent, &self->trial->stamp);
+    aisle_status st = aisle_verify_step(&self->verify, units, &self->spent, &self->spare.stamp);
     if (st == AISLE_BUSY) {
         return AISLE_BUSY;
     }
@@ -219,12 +202,11 @@ aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
     if (st != AISLE_OK) {
         return disproved(self);
     }
-    self->trial->value = path_value(self);
-    if (self->trial == &self->better) {
-        return after_better_proof(self);
+    if (any_swarm_leg(self)) {
+        return after_swarm_proof(self);
     }
-    self->first.ready = true;
-    return after_first_proof(self);
+    aisle_route_judge(self, false);
+    return after_seed_proof(self);
 }
 
 // ---- SWARM
@@ -241,18 +223,17 @@ static void begin_swarm_leg(aisle_route *self) {
     for (; self->leg < (uint32_t)self->request.num_goals; self->leg++) {
         aisle_leg *leg = &self->legs[self->leg];
         aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
-        if (leg->count >= 2U && left_for_swarm(self) > 0U &&
+        if (leg->count >= 2U && !leg->is_clear && left_for_swarm(self) > 0U &&
             aisle_swarm_start(&self->swarm, &self->space, &self->objective, &self->request.options,
                               self->points + leg->first, leg->count) == AISLE_OK) {
             return;
         }
     }
-    if (!any_swarm_leg(self)) {
-        self->stage = AISLE_ROUTE_END;
-        return;
+    if (any_swarm_leg(self)) {
+        aisle_route_begin_build(self);
+    } else {
+        self->stage = AISLE_ROUTE_NEXT;
     }
-    self->path->path_revision++;
-    aisle_route_begin_build(self, &self->better);
 }
 
 aisle_status aisle_route_step_swarm(aisle_route *self, uint32_t units) {
@@ -267,5 +248,5 @@ aisle_status aisle_route_step_swarm(aisle_route *self, uint32_t units) {
     leg->use_swarm = leg->via_count > 0U;
     self->leg++;
     begin_swarm_leg(self);
-    return self->stage == AISLE_ROUTE_END ? AISLE_OK : AISLE_BUSY;
+    return AISLE_BUSY;
 }

@@ -33,12 +33,20 @@ static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mo
     return aisle_vehicle_is_disc(self->vehicle) ? attempts[n].for_discs : attempts[n].for_bodies;
 }
 
-// The first attempt from n on that finds its ends; none does: WHY.
+// No way was found: the first way of all asks why, others are given up.
+static void end_attempts(aisle_route *self) {
+    if (self->way_index == 0U) {
+        aisle_route_begin_why(self, coarse_stride(self));
+    } else {
+        self->stage = AISLE_ROUTE_DROP;
+    }
+}
+
 void aisle_route_begin_seed(aisle_route *self, uint32_t n) {
     aisle_leg *leg = &self->legs[self->leg];
     self->stage = AISLE_ROUTE_SEED;
     // Before the dear attempts the proof is asked whether there can be a way at all.
-    uint32_t end = n < AISLE_ROUTE_ATTEMPTS_CHEAP ? AISLE_ROUTE_ATTEMPTS_CHEAP : ATTEMPTS;
+    uint32_t end = self->way_index == 0U && n < AISLE_ROUTE_ATTEMPTS_CHEAP ? AISLE_ROUTE_ATTEMPTS_CHEAP : ATTEMPTS;
     for (; n < end; n++) {
         uint32_t stride;
         leg->attempt = n;
@@ -53,16 +61,17 @@ void aisle_route_begin_seed(aisle_route *self, uint32_t n) {
             return;
         }
     }
-    aisle_route_begin_why(self, coarse_stride(self));
+    end_attempts(self);
 }
 
 static void begin_leg(aisle_route *self) {
     aisle_leg *leg = &self->legs[self->leg];
     aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
     aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
-    *leg = (aisle_leg){
-        .first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0, .bound = aisle_vec2_distance(from, to)};
-    if (leg->bound < 1e-6) { // there already
+    double beeline = aisle_vec2_distance(from, to);
+    double bound = self->way_index == 0U ? beeline : leg->bound; // the first way's search has raised it
+    *leg = (aisle_leg){.first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0, .bound = bound};
+    if (beeline < 1e-6) { // there already
         self->stage = AISLE_ROUTE_SEED;
         leg->count = 1;
         self->points[self->point_count++] = from;
@@ -86,8 +95,13 @@ void aisle_route_next_leg(aisle_route *self) {
     if (self->leg < (uint32_t)self->request.num_goals) {
         begin_leg(self);
     } else {
-        aisle_route_begin_build(self, &self->first);
+        aisle_route_begin_build(self);
     }
+}
+
+static aisle_status give_up(aisle_route *self, double needed) {
+    return aisle_route_give_way_up(self, AISLE_STATUS_LIMIT, 0, needed,
+                                   aisle_route_place(&self->request.goals[self->leg]));
 }
 
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
@@ -97,16 +111,16 @@ aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
         return AISLE_BUSY;
     }
     if (AISLE_ROUTE_POINTS - self->point_count < AISLE_SEED_POINTS_MAX) {
-        return aisle_route_refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->point_count);
+        return give_up(self, (double)self->point_count);
     }
     uint32_t before = self->seed.search.expanded;
     aisle_status st = aisle_seed_step(&self->seed, units, &self->spent);
     self->nodes += (int64_t)self->seed.search.expanded - (int64_t)before;
     if (st == AISLE_ERR_CAPACITY) {
-        return aisle_route_refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
+        return give_up(self, (double)self->seed.search.open_capacity);
     }
     if (st == AISLE_PARTIAL) {
-        if (leg->attempt + 1U == AISLE_ROUTE_ATTEMPTS_CHEAP) {
+        if (leg->attempt + 1U == AISLE_ROUTE_ATTEMPTS_CHEAP && self->way_index == 0U) {
             aisle_route_begin_why(self, coarse_stride(self)); // it goes on with the others if there can be a way
         } else {
             aisle_route_begin_seed(self, leg->attempt + 1U);

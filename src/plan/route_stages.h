@@ -37,6 +37,20 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
 // route_check.c
 aisle_status aisle_route_check(aisle_route *self);
 
+// route_ways.c
+
+// Begin the first way; go on to the next, or end the request.
+void aisle_route_begin_ways(aisle_route *self);
+aisle_status aisle_route_next_way(aisle_route *self);
+// What comes next takes long: AISLE_PARTIAL if there is an answer that was not told yet, else AISLE_BUSY.
+aisle_status aisle_route_announce(aisle_route *self);
+// The way under way has no path; the cause is told if no other has one.
+aisle_status aisle_route_give_way_up(aisle_route *self, int16_t cause, int32_t id, double value, aisle_vec2 place);
+// What the path just composed is worth by the request's objective: m, s, J, or risk and then m.
+double aisle_route_measure(const aisle_route *self);
+// The spare one is proved: it becomes the best if it is the first, better, or asked for by name.
+void aisle_route_judge(aisle_route *self, bool by_name);
+
 // route_tangent.c
 void aisle_route_begin_tangent(aisle_route *self);
 aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units);
@@ -59,7 +73,7 @@ aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
 
 // route_proof.c
 aisle_compose_request aisle_route_build_request(aisle_route *self);
-void aisle_route_begin_build(aisle_route *self, aisle_proof *trial);
+void aisle_route_begin_build(aisle_route *self);
 aisle_status aisle_route_step_build(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_swarm(aisle_route *self, uint32_t units);

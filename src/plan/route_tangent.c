@@ -7,10 +7,6 @@ static uint32_t left_for_tangent(const aisle_route *self) {
     return self->tangent_units < share ? share - self->tangent_units : 0U;
 }
 
-static bool wants_shortest(const aisle_route *self) {
-    return aisle_objective_is_length(&self->objective) && self->request.options.planner != AISLE_OPTIONS_PSO;
-}
-
 // Radii that the search is made for, as parts of what lies between the discs inside and around the body: the bound's
 // first, the body's own turning disc last. In between for long bodies: a way that is too tight for them at one place is
 // another one a little wider.
@@ -21,12 +17,13 @@ static const double searched[] = {0.0, 0.1, 0.4, 1.0};
 
 static double radius_at(const aisle_route *self, double part) {
     const aisle_vehicle *vehicle = self->vehicle;
-    return vehicle->inner_radius + self->space.keep + part * (vehicle->outer_radius - vehicle->inner_radius);
+    return vehicle->inner_radius + self->room + part * (vehicle->outer_radius - vehicle->inner_radius);
 }
 
 static void search(aisle_route *self, uint32_t n) {
     const aisle_vehicle *vehicle = self->vehicle;
-    double radius = n == BOUND ? vehicle->inner_radius + vehicle->margin : radius_at(self, searched[n]);
+    bool for_bound = n == BOUND && self->way_index == 0U;
+    double radius = for_bound ? vehicle->inner_radius + vehicle->margin : radius_at(self, searched[n]);
     self->tangent_search = n;
     self->stage = AISLE_ROUTE_TANGENT;
     aisle_tangent_start(&self->tangent, self->layout, radius, aisle_route_place(aisle_route_leg_start(self, self->leg)),
@@ -37,7 +34,11 @@ void aisle_route_begin_tangent(aisle_route *self) {
     aisle_leg *leg = &self->legs[self->leg];
     leg->mode = AISLE_SPACE_FREE_TURN;
     aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
-    search(self, BOUND);
+    if (self->way->kind == AISLE_WAY_GRID && self->way_index > 0U) { // the bound is known
+        aisle_route_begin_seed(self, 0);
+    } else {
+        search(self, BOUND);
+    }
 }
 
 // Takes the way found, pulled about circles of this radius, as the leg's. False: it is not free for such a disc.
@@ -58,7 +59,8 @@ static bool take_tight_way(aisle_route *self) {
         double radius = radius_at(self, tried[i]);
         bool may_bend = vehicle->curvature_max <= 0.0 || radius * vehicle->curvature_max >= 1.0;
         if (may_bend && tried[i] > searched[self->tangent_search] && take_way(self, radius) &&
-            aisle_compose_way_free(&self->compose, &request, self->leg, &self->spent)) {
+            aisle_compose_way_free(&self->compose, &request, self->leg, self->room - 0.5 * AISLE_SPACE_SLACK,
+                                   &self->spent)) {
             return true;
         }
     }
@@ -69,19 +71,18 @@ static bool take_tight_way(aisle_route *self) {
 // Takes the way found if it is one for the body. The turning disc's own way is.
 static bool take(aisle_route *self) {
     if (self->tangent_search == TURNING || aisle_vehicle_is_disc(self->vehicle)) {
-        return take_way(self, self->space.reach);
+        return take_way(self, radius_at(self, 1.0));
     }
     return !self->is_wide && take_tight_way(self);
 }
 
 static void go_on(aisle_route *self, bool found) {
-    if (self->tangent_search == BOUND) {
-        self->legs[self->leg].bound = self->tangent.bound;
-    }
-    if (!wants_shortest(self)) {
+    aisle_leg *leg = &self->legs[self->leg];
+    if (self->way->kind == AISLE_WAY_GRID) {
         aisle_route_begin_seed(self, 0);
     } else if (found && take(self)) {
-        self->point_count += self->legs[self->leg].count;
+        leg->is_clear = self->way->kind == AISLE_WAY_CLEAR;
+        self->point_count += leg->count;
         aisle_route_next_leg(self);
     } else if (self->tangent_search < TURNING) {
         bool straight_on = aisle_vehicle_is_disc(self->vehicle) || self->is_wide;
@@ -101,8 +102,11 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     if (st == AISLE_BUSY && left_for_tangent(self) > 0U) {
         return AISLE_BUSY;
     }
-    if (self->tangent_search == BOUND && st == AISLE_PARTIAL) {
-        aisle_route_begin_seed(self, 0); // no way at all: the grid is asked as well, and then why
+    if (self->tangent_search == BOUND && self->way_index == 0U && st != AISLE_PARTIAL) {
+        self->legs[self->leg].bound = self->tangent.bound;
+    }
+    if (st == AISLE_PARTIAL) { // nor is there one for anything wider: the grid is asked as well, and then why
+        aisle_route_begin_seed(self, 0);
     } else {
         go_on(self, st == AISLE_OK);
     }

@@ -1,0 +1,131 @@
+#include "plan/route_stages.h"
+
+#include "base/check.h"
+
+#include <math.h>
+
+#define CREEP_SPARE 2e-3      // m, what is told of a clearance may be lower than the truth by less
+#define RISK_STEP 1e-3        // risks nearer to each other than this are alike
+#define LENGTH_SPAN 1048576.0 // m, no path is so long
+
+// What each objective tries, in order. The same candidates for fastest and least energy, so that neither can be beaten
+// by the other's answer, nor by the safest or the shortest one.
+static const aisle_way shortest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST}};
+static const aisle_way safest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST}, {AISLE_WAY_CLEAR, AISLE_OPTIONS_SAFEST}};
+static const aisle_way quickest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
+                                     {AISLE_WAY_CLEAR, AISLE_OPTIONS_SAFEST},
+                                     {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
+                                     {AISLE_WAY_GRID, AISLE_OPTIONS_LEAST_ENERGY}};
+static const aisle_way by_grid[] = {{AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST},
+                                    {AISLE_WAY_GRID, AISLE_OPTIONS_SHORTEST},
+                                    {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
+                                    {AISLE_WAY_GRID, AISLE_OPTIONS_LEAST_ENERGY}};
+
+// The n-th way of the request; NULL: there are no more.
+static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
+    int8_t wish = self->request.options.objective;
+    if (self->request.options.planner == AISLE_OPTIONS_PSO) { // the swarm by name: on its own objective's seed alone
+        return n == 0U ? &by_grid[wish] : NULL;
+    }
+    switch (wish) {
+    case AISLE_OPTIONS_SHORTEST:
+        return n < sizeof shortest / sizeof shortest[0] ? &shortest[n] : NULL;
+    case AISLE_OPTIONS_SAFEST:
+        return n < sizeof safest / sizeof safest[0] ? &safest[n] : NULL;
+    default:
+        return n < sizeof quickest / sizeof quickest[0] ? &quickest[n] : NULL;
+    }
+}
+
+static void begin_way(aisle_route *self) {
+    const aisle_vehicle *vehicle = self->vehicle;
+    aisle_options_msg options = self->request.options;
+    options.objective = self->way->objective;
+    bool known = aisle_objective_of(&options, vehicle, &self->objective);
+    AISLE_ASSERT(known);
+    double keep = vehicle->margin + AISLE_SPACE_SLACK;
+    bool is_clear = self->way->kind == AISLE_WAY_CLEAR;
+    self->room = is_clear ? aisle_max(vehicle->creep_clearance + CREEP_SPARE, keep) : keep;
+    aisle_route_begin_legs(self);
+}
+
+void aisle_route_begin_ways(aisle_route *self) {
+    self->way_index = 0;
+    self->way = way_of(self, 0);
+    begin_way(self);
+}
+
+// Is there nothing left to gain? A way without risk that is the shortest of all is the safest.
+static bool is_best(const aisle_route *self) {
+    const aisle_proof *best = aisle_route_answer(self);
+    bool by_risk =
+        self->request.options.objective == AISLE_OPTIONS_SAFEST && !(self->request.options.risk_weight > 0.0F);
+    return by_risk && best != NULL && best->value < LENGTH_SPAN;
+}
+
+aisle_status aisle_route_announce(aisle_route *self) {
+    if (self->announced || !self->best.ready) {
+        return AISLE_BUSY;
+    }
+    self->announced = true;
+    self->best.told = true;
+    return AISLE_PARTIAL;
+}
+
+aisle_status aisle_route_next_way(aisle_route *self) {
+    self->way_index++;
+    self->way = is_best(self) ? NULL : way_of(self, self->way_index);
+    if (self->way == NULL) {
+        self->stage = AISLE_ROUTE_END;
+        return AISLE_OK;
+    }
+    self->stops = false;
+    self->is_wide = false;
+    begin_way(self);
+    return self->way->kind == AISLE_WAY_GRID ? aisle_route_announce(self) : AISLE_BUSY;
+}
+
+aisle_status aisle_route_give_way_up(aisle_route *self, int16_t cause, int32_t id, double value, aisle_vec2 place) {
+    if (self->cause.cause == 0) { // the first way's reason is the one that is told, if none works out
+        self->cause = (aisle_refusal){cause, id, (float)value};
+        self->place = place;
+        self->has_place = true;
+    }
+    return aisle_route_next_way(self);
+}
+
+// Risk first, then length: as one number.
+static double safety(const aisle_route *self) {
+    const aisle_path_msg *path = self->path;
+    double weight = (double)self->request.options.risk_weight;
+    if (weight > 0.0) {
+        return (double)path->length * (1.0 + weight * (double)path->risk);
+    }
+    double steps = floor((double)path->risk / RISK_STEP + 0.5);
+    return steps * LENGTH_SPAN + aisle_min((double)path->length, 0.5 * LENGTH_SPAN);
+}
+
+double aisle_route_measure(const aisle_route *self) {
+    switch (self->request.options.objective) {
+    case AISLE_OPTIONS_SAFEST:
+        return safety(self);
+    case AISLE_OPTIONS_FASTEST:
+        return (double)self->path->duration;
+    case AISLE_OPTIONS_LEAST_ENERGY:
+        return (double)self->path->energy;
+    default:
+        return (double)self->path->length;
+    }
+}
+
+void aisle_route_judge(aisle_route *self, bool by_name) {
+    self->spare.value = aisle_route_measure(self);
+    self->spare.ready = true;
+    self->spare.told = false;
+    if (!self->best.ready || by_name || self->spare.value < self->best.value) {
+        aisle_proof swap = self->best;
+        self->best = self->spare;
+        self->spare = swap;
+    }
+    self->spare.ready = false;
+}
