@@ -74,7 +74,7 @@ def bounds(length: float | None) -> dict:
 def of_scenarios(args: argparse.Namespace) -> dict:
     made = {}
     for path in sorted(args.folder.glob("*.json")):
-        if path.name == "optimum.json" or (args.only and path.stem not in args.only):
+        if path.name in ("optimum.json", "causes.json") or (args.only and path.stem not in args.only):
             continue
         data, began = json.loads(path.read_text()), time.monotonic()
         robot = data["robot"]

@@ -146,12 +146,12 @@ def rooms(rng: random.Random, columns: int) -> tuple:
     return (columns * size, lines * size), radius, polygons, None
 
 
-def slits(rng: random.Random, excess: float, detour: bool) -> tuple:
-    """Three walls across, each with a slit wider than the disc by the share `excess`; detour: a wide gap farther off."""
+def slits(rng: random.Random, excess: float, detour: bool, walls: int = 3) -> tuple:
+    """Walls across, each with a slit wider than the disc by the share `excess`; detour: a wide gap farther off."""
     side, radius = 20.0, radius_of(rng, 0.2, 0.5)
     polygons = []
-    for i in range(3):
-        x, width = 5.0 * (i + 1) + rng.uniform(-1.0, 1.0), 2.0 * radius * (1.0 + excess)
+    for i in range(walls):
+        x, width = side / (walls + 1) * (i + 1) + rng.uniform(-1.0, 1.0), 2.0 * radius * (1.0 + excess)
         doors = [(rng.uniform(2.0, 11.0), width)] + ([(17.5, 4.0 * radius + 1.0)] if detour else [])
         polygons += wall_with_doors(rng, (-1.0, side + 1.0, x), doors, rng.uniform(0.1, 0.4), True)
     for _ in range(6):
@@ -180,7 +180,7 @@ STANDARD = [
     *[("slits", slits, (share, detour)) for share in (0.01, 0.03, 0.1) for detour in (False, True)],
 ]
 CLOSED = [
-    *[("closed", slits, (share, False)) for share in (-0.001, -0.01, -0.03)],
+    *[("closed", slits, (share, False, walls)) for share, walls in ((-0.001, 1), (-0.01, 2), (-0.03, 3))],
     *[("walled", walled_in, (n,)) for n in (0, 10, 30)],
 ]
 
