@@ -130,6 +130,7 @@ aisle_aabb aisle_layout_bounds(const aisle_layout *self); // with a scan: what t
 uint32_t aisle_layout_zone_count(const aisle_layout *self);
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index);
 aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone *zone);
+bool aisle_layout_has_speed_limits(const aisle_layout *self); // zones of kind SPEED_LIMIT
 static inline bool aisle_zone_is_obstacle(const aisle_zone *zone) {
     return zone->kind == AISLE_POLYGON_OBSTACLE || zone->kind == AISLE_POLYGON_KEEPOUT;
 }

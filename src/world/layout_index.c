@@ -80,8 +80,10 @@ void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_store
     choose_side(self, store);
     const uint32_t buckets = self->nx * self->ny;
     memset(self->starts, 0, (buckets + 1U) * sizeof *self->starts);
+    self->has_speed_limits = false;
     for (uint32_t i = 0; i < store->zone_count; i++) {
         count_zone(self, aisle_layout_index_range(self, store->zones[i].box));
+        self->has_speed_limits = self->has_speed_limits || store->zones[i].kind == AISLE_POLYGON_SPEED_LIMIT;
     }
     for (uint32_t b = 1; b <= buckets;
          b++) { // now starts[b] is where b ends, and filling backwards moves it to its start

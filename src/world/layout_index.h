@@ -13,11 +13,12 @@
 
 typedef struct aisle_layout_index {
     aisle_vec2 lo;
-    double side;       // m, a power of two
-    double per_metre;  // buckets: 1 / side, exactly
-    uint32_t nx, ny;   // 0: empty
-    uint32_t *starts;  // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
-    uint16_t *entries; // [entry_capacity] zone indices, rising in a bucket
+    double side;           // m, a power of two
+    double per_metre;      // buckets: 1 / side, exactly
+    uint32_t nx, ny;       // 0: empty
+    bool has_speed_limits; // some zone is of kind SPEED_LIMIT
+    uint32_t *starts;      // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
+    uint16_t *entries;     // [entry_capacity] zone indices, rising in a bucket
     uint32_t bucket_capacity, entry_capacity;
 } aisle_layout_index;
 
