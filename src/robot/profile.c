@@ -187,7 +187,7 @@ static double piece_limit(const aisle_vehicle *vehicle, const aisle_layout *layo
     if ((double)p->to->clearance < vehicle->creep_clearance) {
         limit = aisle_min(limit, vehicle->creep_speed);
     }
-    return layout == NULL ? limit : zone_limit(vehicle, layout, p, limit);
+    return layout == NULL || !aisle_layout_has_speed_limits(layout) ? limit : zone_limit(vehicle, layout, p, limit);
 }
 
 // Until the last pass s holds the length and a the limit of the piece that ends here, both rounded down.

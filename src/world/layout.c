@@ -71,6 +71,10 @@ aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone 
     return (aisle_convex){&aisle_layout_held(self)->vertices[zone->first], zone->n, 0.0};
 }
 
+bool aisle_layout_has_speed_limits(const aisle_layout *self) {
+    return self->index.has_speed_limits;
+}
+
 bool aisle_layout_has_scan(const aisle_layout *self) {
     return self->has_active && aisle_layout_held(self)->header.tiles > 0;
 }

@@ -70,7 +70,11 @@ static void build_indices(aisle_layout *self) {
     const double share = sqrt(size.x * size.y / (double)(aisle_layout_blocks_count(&blocks) + 1U));
     aisle_layout_rects_find_corners(&self->rects, store);
     aisle_layout_index_build(&self->index, &zones, AISLE_LAYOUT_BUCKET);
-    aisle_layout_index_build(&self->wide, &blocks, aisle_max(share, AISLE_LAYOUT_BUCKET_WIDE));
+    double side = AISLE_LAYOUT_BUCKET_WIDE;
+    while (2.0 * side <= share) {
+        side *= 2.0;
+    }
+    aisle_layout_index_build(&self->wide, &blocks, side);
 }
 
 // Items of one unit each in a phase.

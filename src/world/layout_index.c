@@ -94,8 +94,12 @@ void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_block
     choose_side(self, blocks, side);
     const uint32_t buckets = self->nx * self->ny;
     memset(self->starts, 0, (buckets + 1U) * sizeof *self->starts);
+    self->has_speed_limits = false;
     for (uint32_t i = 0; i < aisle_layout_blocks_count(blocks); i++) {
         count_block(self, aisle_layout_index_range(self, aisle_layout_blocks_box(blocks, i)));
+    }
+    for (uint32_t i = 0; i < blocks->store->zone_count; i++) {
+        self->has_speed_limits = self->has_speed_limits || blocks->store->zones[i].kind == AISLE_POLYGON_SPEED_LIMIT;
     }
     for (uint32_t b = 1; b <= buckets;
          b++) { // now starts[b] is where b ends, and filling backwards moves it to its start

@@ -13,11 +13,12 @@
 
 typedef struct aisle_layout_index {
     aisle_vec2 lo;
-    double side;       // m, a power of two
-    double per_metre;  // buckets: 1 / side, exactly
-    uint32_t nx, ny;   // 0: empty
-    uint32_t *starts;  // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
-    uint16_t *entries; // [entry_capacity] block indices, rising in a bucket
+    double side;           // m, a power of two
+    double per_metre;      // buckets: 1 / side, exactly
+    uint32_t nx, ny;       // 0: empty
+    bool has_speed_limits; // some zone is of kind SPEED_LIMIT
+    uint32_t *starts;      // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
+    uint16_t *entries;     // [entry_capacity] block indices, rising in a bucket
     uint32_t bucket_capacity, entry_capacity;
 } aisle_layout_index;
 
@@ -36,7 +37,7 @@ aisle_aabb aisle_layout_blocks_box(const aisle_layout_blocks *self, uint32_t ind
 // 4 * blocks + 4096 buckets, 8 * blocks + 4096 entries; blocks <= 65535.
 void aisle_layout_index_carve(aisle_layout_index *self, aisle_arena *arena, uint32_t blocks);
 
-// Over the store's bounds, which are not empty and finite; at most as many blocks as were carved for; side (m) > 0, of
+// Over the store's bounds, which are not empty and finite; at most as many blocks as were carved for; side (m), a power of two, of
 // the buckets if they fit.
 void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_blocks *blocks, double side);
 

@@ -234,6 +234,53 @@ static void test_pieces_are_no_longer_than_stated(void) {
     TEST_ASSERT_TRUE(path.num_waypoints >= 10 && path.num_waypoints < 20); // joined where nothing changes
 }
 
+// Least gap of the body over the piece that ends at w, sampled.
+static double sampled_gap(const aisle_waypoint_msg *w) {
+    door_piece piece = door_piece_of(w - 1, w);
+    return door_piece_gap(&piece);
+}
+
+static void test_pieces_are_slow_just_where_the_body_is_too_near_for_every_objective(void) {
+    int slow = 0, fast = 0;
+    for (int8_t objective_kind = AISLE_OPTIONS_SAFEST; objective_kind <= AISLE_OPTIONS_LEAST_ENERGY; objective_kind++) {
+        for (int k = 0; k < 12; k++) {
+            point_count = leg_count = 0;
+            aisle_vec2 line[] = {{1.0, 3.6 + 0.05 * k}, {12.0, 4.5 - 0.05 * k}, {13.0, 12.0}, {6.0, 8.1 + 0.05 * k}};
+            leg(line, 4);
+            options.objective = objective_kind;
+            build_well();
+            for (int16_t i = 1; i < path.num_waypoints; i++) {
+                const aisle_waypoint_msg *w = &path.waypoints[i];
+                bool creeps = (double)w->clearance < hall_vehicle.creep_clearance;
+                double gap = sampled_gap(w);
+                TEST_ASSERT_TRUE(creeps ? gap < hall_vehicle.creep_clearance + 7e-3
+                                        : gap >= hall_vehicle.creep_clearance - 1e-6);
+                slow += creeps;
+                fast += !creeps;
+            }
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_INT(100, slow);
+    TEST_ASSERT_GREATER_THAN_INT(100, fast);
+}
+
+static void test_a_disc_rounds_a_corner_as_wide_as_its_legs_are_free(void) {
+    double most;
+    hall_disc(0.3, 0.05F);
+    open_hall();
+    double keep = hall_vehicle.outer_radius + hall_vehicle.margin, off = keep + AISLE_SPACE_SLACK;
+    aisle_vec2 around[] = {{11.0, 5.0 - off}, {7.0 - off, 5.0 - off}, {7.0 - off, 10.0}};
+    leg(around, 3);
+    build_well();
+    TEST_ASSERT_EQUAL_INT(0, count_flags(AISLE_WAYPOINT_TURN_IN_PLACE));
+    TEST_ASSERT_TRUE(arcs(&most) >= 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1.0 / keep, most);
+    by_swarm(); // whose legs are not known to be free: the arc is tried
+    options.interpolation = AISLE_OPTIONS_LINEAR;
+    build_well();
+    TEST_ASSERT_TRUE(arcs(&most) >= 1 && most >= 1.0 / keep - 1e-4);
+}
+
 static void test_a_spline_passes_its_vias_smoothly_and_free(void) {
     aisle_vec2 bow[] = {{2.0, 3.0}, {5.0, 8.5}, {9.0, 9.5}, {14.0, 4.0}, {18.0, 4.0}};
     leg(bow, 5);
@@ -337,6 +384,8 @@ int main(void) {
     RUN_TEST(test_fixed_headings_are_turned_to_on_the_spot);
     RUN_TEST(test_goals_are_flagged_in_order_with_a_stop_and_their_dwell);
     RUN_TEST(test_pieces_are_no_longer_than_stated);
+    RUN_TEST(test_pieces_are_slow_just_where_the_body_is_too_near_for_every_objective);
+    RUN_TEST(test_a_disc_rounds_a_corner_as_wide_as_its_legs_are_free);
     RUN_TEST(test_a_spline_passes_its_vias_smoothly_and_free);
     RUN_TEST(test_the_swarms_polyline_is_driven_where_lines_are_wished);
     RUN_TEST(test_values_are_the_objectives_integral);

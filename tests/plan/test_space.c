@@ -180,7 +180,7 @@ static void test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_ev
         aisle_rng rng = aisle_rng_seed(seed);
         random_hall(&rng);
         open_space(AISLE_SPACE_FREE_TURN);
-        for (int k = 0; k < 8; k++) {
+        for (int k = 0; k < 60; k++) {
             aisle_waypoint_msg a, b;
             random_piece(&rng, k % 2 == 0, &a, &b);
             double told = aisle_space_piece_clearance(&space, &a, &b, &units);

@@ -261,6 +261,20 @@ static void test_every_truncation_is_refused(void) {
     }
 }
 
+static void test_of_a_message_cut_off_the_first_fault_is_told(void) {
+    enum { X = 24, Y = 32, THETA = 40 }; // of pose_t: fields of one kind in a row
+    (void)encoded(AISLE_MSG_POSE, FILL_FULL_OUTER, 1);
+    refused(AISLE_MSG_POSE, bytes, Y + 4, AISLE_MSG_FAULT_TRUNCATED);
+    TEST_ASSERT_EQUAL_STRING("y", fault.field);
+    refused(AISLE_MSG_POSE, bytes, THETA, AISLE_MSG_FAULT_TRUNCATED);
+    TEST_ASSERT_EQUAL_STRING("theta", fault.field);
+    memset(bytes + Y, 0xFF, 8); // not a number
+    refused(AISLE_MSG_POSE, bytes, Y + 4, AISLE_MSG_FAULT_TRUNCATED);
+    TEST_ASSERT_EQUAL_STRING("y", fault.field);
+    refused(AISLE_MSG_POSE, bytes, THETA + 4, AISLE_MSG_FAULT_NOT_FINITE);
+    TEST_ASSERT_EQUAL_STRING("y", fault.field);
+}
+
 static void test_bytes_left_over_are_refused_and_counted(void) {
     for (uint32_t type = 0; type < AISLE_MSG_COUNT; type++) {
         size_t size = encoded(type, FILL_RANDOM, 7);
@@ -658,6 +672,7 @@ int main(void) {
     RUN_TEST(test_entries_behind_a_count_are_neither_read_nor_written);
     RUN_TEST(test_bytes_may_lie_at_any_address);
     RUN_TEST(test_every_truncation_is_refused);
+    RUN_TEST(test_of_a_message_cut_off_the_first_fault_is_told);
     RUN_TEST(test_bytes_left_over_are_refused_and_counted);
     RUN_TEST(test_a_size_no_datagram_has_is_refused_before_a_byte_is_read);
     RUN_TEST(test_another_fingerprint_is_refused);
