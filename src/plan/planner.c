@@ -132,7 +132,7 @@ static void begin(aisle_planner *self, const aisle_request *request) {
     }
     aisle_refusal why = aisle_planner_hindrance(self, request);
     if (why.cause != 0) {
-        aisle_planner_refuse(self, request, &why, NULL, 0);
+        aisle_planner_refuse(self, request, &why, NULL, 0, 0);
         self->counters[request->is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
         return;
     }
@@ -182,8 +182,7 @@ static void end_route(aisle_planner *self) {
     count_route(self);
     const aisle_proof *answer = aisle_route_answer(route);
     if (answer == NULL) {
-        aisle_planner_refuse(self, &route->request, &route->cause, route->has_place ? &route->place : NULL,
-                             route->spent);
+        aisle_planner_refuse(self, &route->request, &route->cause, route->told, route->told_count, route->spent);
     } else if (route->request.is_query || !answer->told) {
         aisle_planner_publish(self, &route->request, answer);
     }

@@ -26,7 +26,7 @@ static void fill_head(aisle_planner *self, const aisle_request *request) {
 }
 
 void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
-                          const aisle_vec2 *place, uint32_t work_units) {
+                          const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units) {
     aisle_event_kind kind = request->is_query ? AISLE_EVENT_REPLY : AISLE_EVENT_PATH;
     if (kind == AISLE_EVENT_PATH) {
         self->path_revision++;
@@ -41,9 +41,10 @@ void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, con
     head->cause_id = why->id;
     head->cause_value = why->value;
     head->work_units = (int32_t)work_units;
-    head->num_waypoints = place != NULL ? 1 : 0;
-    if (place != NULL) {
-        head->waypoints[0] = (aisle_waypoint_msg){.x = place->x, .y = place->y};
+    AISLE_ASSERT(told_count <= AISLE_ROUTE_TOLD_MAX);
+    head->num_waypoints = (int16_t)told_count;
+    for (uint32_t i = 0; i < told_count; i++) {
+        head->waypoints[i] = told[i];
     }
     size_t size = 0;
     aisle_status st = aisle_path_encode(head, self->refusal[kind], AISLE_REFUSAL_BYTES, &size);
@@ -105,7 +106,7 @@ void aisle_planner_renew(aisle_planner *self) {
 void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id) {
     if (self->mission.has_path) {
         aisle_refusal why = {cause, id, 0.0F};
-        aisle_planner_refuse(self, &self->mission.request, &why, NULL, 0);
+        aisle_planner_refuse(self, &self->mission.request, &why, NULL, 0, 0);
     }
 }
 

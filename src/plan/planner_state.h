@@ -9,7 +9,7 @@
 #include "aisle/planner.h"
 #include "plan/route.h"
 
-#define AISLE_REFUSAL_BYTES 512U // of an encoded path_t with at most one waypoint
+#define AISLE_REFUSAL_BYTES 1024U // of an encoded path_t with at most AISLE_ROUTE_TOLD_MAX waypoints
 #define AISLE_MEMORY_ROWS 8U
 
 typedef struct aisle_outgoing { // a path_t waiting to be pulled
@@ -55,7 +55,7 @@ struct aisle_planner {
     bool planning;
     aisle_mission mission;
     int32_t path_revision;
-    aisle_path_msg *head;  // of answers; waypoints unused but the one of a refusal
+    aisle_path_msg *head;  // of answers; waypoints unused but those of a refusal
     uint8_t *refusal[2];   // [AISLE_REFUSAL_BYTES] for PATH and REPLY
     aisle_outgoing out[2]; // by aisle_event_kind
     int64_t lease_due_us;
@@ -77,9 +77,9 @@ int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us,
 
 // planner_answer.c
 
-// Queues a path_t of status NONE; place may be NULL.
+// Queues a path_t of status NONE with the places told; told_count at most AISLE_ROUTE_TOLD_MAX.
 void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
-                          const aisle_vec2 *place, uint32_t work_units);
+                          const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units);
 // Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission; one that must not be
 // driven now is kept back until its lease may begin.
 void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);

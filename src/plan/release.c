@@ -93,14 +93,14 @@ static bool is_proved(const uint8_t *bytes, size_t size, const aisle_stamp *stam
     return aisle_release_crc(bytes, size, &crc) && crc == stamp->crc;
 }
 
-// A path_t of status NONE: nothing to drive; one waypoint at most, the place its cause is at.
+// A path_t of status NONE: nothing to drive; its few waypoints tell the reason.
 static bool is_revocation(const uint8_t *bytes, size_t size) {
     size_t status = offset_of("status"), count = offset_of("num_waypoints");
     if (bytes == NULL || aisle_msg_check(AISLE_MSG_PATH, bytes, size, NULL) != AISLE_OK) {
         return false;
     }
     AISLE_ASSERT(count + 2 <= size);
-    return bytes[status] == AISLE_PATH_NONE && bytes[count] == 0 && bytes[count + 1] <= 1;
+    return bytes[status] == AISLE_PATH_NONE && bytes[count] == 0 && bytes[count + 1] <= AISLE_RELEASE_TOLD_MAX;
 }
 
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,

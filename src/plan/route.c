@@ -64,7 +64,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->stops = false;
     self->is_wide = false;
     self->announced = false;
-    self->has_place = false;
+    self->told_count = 0;
     self->spent = 0;
     self->tangent_units = 0;
     self->proof_units = 0;
@@ -83,6 +83,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_check(self);
     case AISLE_ROUTE_TANGENT:
         return aisle_route_step_tangent(self, units);
+    case AISLE_ROUTE_NEAREST:
+        return aisle_route_step_nearest(self, units);
     case AISLE_ROUTE_SEED:
         return aisle_route_step_seed(self, units);
     case AISLE_ROUTE_TAUT:
@@ -105,15 +107,21 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
     }
 }
 
+// What is known by now is told: the first path, a cause already found, or that the budget was too small.
+static aisle_status out_of_budget(aisle_route *self) {
+    self->stage = AISLE_ROUTE_END;
+    if (self->best.ready || self->cause.cause != 0) {
+        return AISLE_OK;
+    }
+    return aisle_route_refuse(self, AISLE_STATUS_BUDGET, 0, (double)self->budget);
+}
+
 aisle_status aisle_route_step(aisle_route *self, uint32_t units) {
     aisle_status st = AISLE_BUSY;
     uint32_t until = units < UINT32_MAX - self->spent ? self->spent + units : UINT32_MAX;
     while (st == AISLE_BUSY && self->spent < until) {
         if (self->spent >= self->budget) {
-            self->stage = AISLE_ROUTE_END;
-            st = aisle_route_answer(self) != NULL
-                     ? AISLE_OK
-                     : aisle_route_refuse(self, AISLE_STATUS_BUDGET, 0, (double)self->budget);
+            st = out_of_budget(self);
             break;
         }
         uint32_t left =

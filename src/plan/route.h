@@ -19,6 +19,7 @@
 
 #include "plan/compose.h"
 #include "plan/leg.h"
+#include "plan/nearest.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
 #include "plan/tangent.h"
@@ -27,9 +28,10 @@
 #include "plan/why.h"
 #include "wire/codec.h"
 
-#define AISLE_ROUTE_POINTS 2048U // of all legs' seed polylines
-#define AISLE_ROUTE_STRIDE 0.1   // m
-#define AISLE_ROUTE_BYTES 60000U // of an encoded path_t: 54 a waypoint and the head
+#define AISLE_ROUTE_POINTS 2048U                                // of all legs' seed polylines
+#define AISLE_ROUTE_STRIDE 0.1                                  // m
+#define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
+#define AISLE_ROUTE_BYTES 60000U                                // of an encoded path_t: 54 a waypoint and the head
 
 typedef struct aisle_request { // a query, or a goal list with the pose it starts from
     bool is_query;
@@ -66,6 +68,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_IDLE,
     AISLE_ROUTE_CHECK,
     AISLE_ROUTE_TANGENT,
+    AISLE_ROUTE_NEAREST,
     AISLE_ROUTE_SEED,
     AISLE_ROUTE_TAUT,
     AISLE_ROUTE_BUILD,
@@ -95,6 +98,7 @@ typedef struct aisle_route {
     aisle_compose compose;
     aisle_verify verify;
     aisle_why why;
+    aisle_nearest nearest;
     aisle_vec2 *points; // [AISLE_ROUTE_POINTS]
     uint32_t point_count;
     aisle_leg *legs;         // [AISLE_GOAL_LIST_MAX_GOALS]
@@ -112,9 +116,9 @@ typedef struct aisle_route {
     uint32_t budget_default;
     int64_t swarm_evals, nodes, verify_failed, intervals; // counters of this request
     aisle_collide_count collide;
-    aisle_refusal cause; // with no path
-    aisle_vec2 place;    // where the cause is, if has_place
-    bool has_place;
+    aisle_refusal cause; // with no path; while running: what will be told if the budget ends here, if not 0
+    aisle_waypoint_msg told[AISLE_ROUTE_TOLD_MAX]; // a refusal's places, as path_t tells them
+    uint32_t told_count;
 } aisle_route;
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);

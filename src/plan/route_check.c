@@ -25,6 +25,7 @@ static double stop_gap(const aisle_route *self, const aisle_goal_msg *stop, int3
     return aisle_layout_gap(self->layout, &disc, cap, id);
 }
 
+// AISLE_BUSY: free; AISLE_PARTIAL: occupied, NEAREST goes on; AISLE_OK: refused.
 static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bool is_start) {
     aisle_vec2 p = aisle_route_place(stop);
     if (!in_bounds(self, p)) {
@@ -36,7 +37,11 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     self->spent += 1U;
     if (gap < self->vehicle->margin + AISLE_SPACE_SLACK) {
         int16_t occupied = is_start ? AISLE_STATUS_START_OCCUPIED : AISLE_STATUS_GOAL_OCCUPIED;
-        return aisle_route_refuse_at(self, occupied, id, self->vehicle->margin + AISLE_SPACE_SLACK - gap, p);
+        (void)aisle_route_refuse_at(self, occupied, id, 0.0, p);
+        aisle_nearest_start(&self->nearest, &self->space, (aisle_pose2){stop->x, stop->y, stop->theta},
+                            aisle_goal_heading_is_free(stop));
+        self->stage = AISLE_ROUTE_NEAREST;
+        return AISLE_PARTIAL;
     }
     return AISLE_BUSY;
 }
@@ -56,5 +61,24 @@ aisle_status aisle_route_check(aisle_route *self) {
     if (st == AISLE_BUSY) {
         aisle_route_begin_ways(self);
     }
-    return st;
+    return st == AISLE_PARTIAL ? AISLE_BUSY : st;
+}
+
+// The distance as told: never below the true one.
+static double rounded_up(double distance) {
+    float told = (float)distance;
+    return (double)told < distance ? distance * (1.0 + 1.2e-7) : distance;
+}
+
+aisle_status aisle_route_step_nearest(aisle_route *self, uint32_t units) {
+    aisle_status st = aisle_nearest_step(&self->nearest, units, &self->spent);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    if (st == AISLE_OK) {
+        self->cause.value = (float)rounded_up(self->nearest.distance);
+        aisle_route_tell(self, self->nearest.place, 0, 0);
+    }
+    self->stage = AISLE_ROUTE_END;
+    return AISLE_OK;
 }

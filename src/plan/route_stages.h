@@ -1,6 +1,6 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_check.c: CHECK. route_seed.c: SEED, TAUT. route_why.c: WHY.
+// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT. route_why.c: WHY.
 // route_proof.c: BUILD, VERIFY, SWARM.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
@@ -23,19 +23,30 @@ static inline const aisle_goal_msg *aisle_route_leg_start(const aisle_route *sel
 // End the request with a cause, with or without its place.
 static inline aisle_status aisle_route_refuse(aisle_route *self, int16_t cause, int32_t id, double value) {
     self->cause = (aisle_refusal){cause, id, (float)value};
+    self->told_count = 0;
     self->stage = AISLE_ROUTE_END;
     return AISLE_OK;
 }
 
+// One more place of a refusal; beyond the last one that fits none is told.
+static inline void aisle_route_tell(aisle_route *self, aisle_vec2 place, int32_t id, int16_t flags) {
+    if (self->told_count < AISLE_ROUTE_TOLD_MAX) {
+        self->told[self->told_count++] =
+            (aisle_waypoint_msg){.x = place.x, .y = place.y, .goal_id = id, .flags = flags};
+    }
+}
+
 static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t cause, int32_t id, double value,
                                                  aisle_vec2 place) {
-    self->place = place;
-    self->has_place = true;
-    return aisle_route_refuse(self, cause, id, value);
+    aisle_status st = aisle_route_refuse(self, cause, id, value);
+    aisle_route_tell(self, place, 0, 0);
+    return st;
 }
 
 // route_check.c
 aisle_status aisle_route_check(aisle_route *self);
+// NEAREST: how far an occupied stop has to move; its cause is told already.
+aisle_status aisle_route_step_nearest(aisle_route *self, uint32_t units);
 
 // route_ways.c
 

@@ -87,9 +87,7 @@ aisle_status aisle_route_next_way(aisle_route *self) {
 
 aisle_status aisle_route_give_way_up(aisle_route *self, int16_t cause, int32_t id, double value, aisle_vec2 place) {
     if (self->cause.cause == 0) { // the first way's reason is the one that is told, if none works out
-        self->cause = (aisle_refusal){cause, id, (float)value};
-        self->place = place;
-        self->has_place = true;
+        (void)aisle_route_refuse_at(self, cause, id, value, place);
     }
     return aisle_route_next_way(self);
 }

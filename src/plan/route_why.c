@@ -6,6 +6,15 @@ void aisle_route_begin_why(aisle_route *self, uint32_t stride) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
+static aisle_status refuse_too_narrow(aisle_route *self) {
+    const aisle_why *why = &self->why;
+    (void)aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->id[0], why->width, why->place);
+    for (uint32_t i = 0; i < why->sides; i++) {
+        aisle_route_tell(self, why->side[i], why->id[i], 0);
+    }
+    return AISLE_OK;
+}
+
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
     aisle_status st = aisle_why_step(&self->why, units, &self->spent);
     const aisle_why *why = &self->why;
@@ -24,8 +33,8 @@ aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
         return aisle_route_refuse_at(self, cause, self->request.goals[self->leg].id, 0.0, why->goal);
     }
     if (why->proved) {
-        return aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->id, why->width, why->place);
+        return refuse_too_narrow(self);
     }
     int16_t cause = aisle_vehicle_is_disc(self->vehicle) ? AISLE_STATUS_BUDGET : AISLE_STATUS_KINEMATIC;
-    return aisle_route_refuse_at(self, cause, why->id, why->width, why->place);
+    return aisle_route_refuse_at(self, cause, why->id[0], why->width, why->place);
 }

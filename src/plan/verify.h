@@ -162,8 +162,10 @@ void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request,
 // Further calls repeat the answer and cost nothing. However cut into steps, answer and counts are the same.
 aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spent, aisle_stamp *stamp);
 
+#define AISLE_RELEASE_TOLD_MAX 8 // waypoints of a refusal
+
 // The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of
-// status NONE with at most one waypoint (nothing to drive: it marks the place of the cause). utime and
+// status NONE with at most AISLE_RELEASE_TOLD_MAX waypoints (nothing to drive: they tell the reason). utime and
 // valid_until_utime (the lease) and work_units (spent after the proof, too) may have changed since. AISLE_ERR_ARG
 // otherwise, *event untouched.
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,

@@ -1,12 +1,16 @@
 #include "plan/why.h"
 
 #include "base/check.h"
+#include "world/layout_facing.h"
 
 #include <math.h>
 
 #define WINDOW 8U        // path cells looked at on either side of the narrowest one
 #define ACROSS_CELLS 2.0 // how far to either side, in cells
 #define ACROSS 16        // tries on either side of a cell, then as many again around the best
+#define FACINGS 8        // tries at the two sides of the gap
+#define FACING_UNITS 8U  // work units of one
+#define FACING_SAME 1e-7 // m
 #define ALONG 16         // places looked at to either side of the best cell, up to its neighbours
 
 static void search_from(aisle_why *self, uint32_t open_from) {
@@ -69,6 +73,36 @@ static aisle_vec2 direction_at(const aisle_seed *seed, uint32_t i) {
     return length > 0.0 ? aisle_vec2_scale(aisle_vec2_sub(b, a), 1.0 / length) : aisle_vec2_of(1.0, 0.0);
 }
 
+// Takes the two obstacles about *p, where nothing comes nearer to the middle between them, for the gap's sides; else
+// moves *p to that middle. False: nothing lies across.
+static bool face(aisle_why *self, aisle_vec2 *p) {
+    const aisle_layout *layout = self->space->layout;
+    aisle_piece a, b;
+    self->seed->units += 3U * FACING_UNITS;
+    if (!aisle_layout_piece_near(layout, *p, AISLE_CLEARANCE_CAP, aisle_vec2_of(0.0, 0.0), &a) || a.gap <= 0.0) {
+        return false;
+    }
+    aisle_vec2 across = aisle_vec2_scale(aisle_vec2_sub(*p, a.nearest), 1.0 / a.gap);
+    if (!aisle_layout_piece_near(layout, *p, 2.0 * AISLE_CLEARANCE_CAP, across, &b)) {
+        return false;
+    }
+    aisle_vec2 on_a, on_b;
+    double width = aisle_piece_gap(&a, &b, *p, &on_a, &on_b);
+    *p = aisle_vec2_lerp(on_a, on_b, 0.5);
+    aisle_convex middle = {p, 1U, 0.0};
+    if (aisle_layout_gap(layout, &middle, 0.5 * width, NULL) < 0.5 * width - FACING_SAME) {
+        return true;
+    }
+    self->place = *p;
+    self->width = width;
+    self->sides = 2U;
+    self->id[0] = a.id;
+    self->id[1] = b.id;
+    self->side[0] = on_a;
+    self->side[1] = on_b;
+    return true;
+}
+
 static void measure_gap(aisle_why *self) {
     const aisle_seed *seed = self->seed;
     const aisle_lattice *lattice = &self->space->grid->lattice;
@@ -89,8 +123,12 @@ static void measure_gap(aisle_why *self) {
         least = here.gap < least.gap ? here : least;
     }
     self->place = least.at;
-    self->id = least.id;
+    self->sides = 1U;
+    self->id[0] = least.id;
+    self->side[0] = least.at;
     self->width = 2.0 * least.gap;
+    for (int k = 0; k < FACINGS && self->sides < 2U && face(self, &least.at); k++) {
+    }
 }
 
 static void halve_doubt(aisle_why *self) {

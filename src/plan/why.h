@@ -9,7 +9,9 @@
 //    on every k-th cell first, on all if those do not connect at all; 1 fails too: walled in.
 //    The way itself then keeps off that least clearance wherever there is room.
 // 3. Its narrowest place: the path's cells of least field value, each moved across the path to where the exact gap is
-//    largest; the least of these is half the gap told.
+//    largest. The obstacle nearest there and the one across the place form the gap, and its width is their exact
+//    distance (layout_facing.h) if nothing else comes nearer to its middle; else, and only then, the width is twice the
+//    gap measured (5 mm at a grid of 0.05 m).
 // Memory: none of its own. Time: about ten grid searches, sliced.
 #ifndef AISLE_PLAN_WHY_H
 #define AISLE_PLAN_WHY_H
@@ -36,7 +38,9 @@ typedef struct aisle_why {
     bool connected;  // for something narrower there is
     double width;    // m, of the narrowest place of the widest way, if connected
     aisle_vec2 place;
-    int32_t id; // of the obstacle there
+    uint32_t sides;     // obstacles that form the gap: 2, or 1 if the other one was not made out
+    int32_t id[2];      // of them
+    aisle_vec2 side[2]; // their points nearest to the gap's middle
 } aisle_why;
 
 // stride: cells, >= 1, for step 2.

@@ -21,7 +21,7 @@
 // sender does alike.
 //
 // Files: layout_store (what a layout is), layout_stage (parts), layout_tile (tiles), layout_patch, layout_index,
-// layout_build (index and grid), layout_gap, layout (questions).
+// layout_build (index and grid), layout_gap, layout_facing, layout (questions).
 //
 // Memory: carved once from limits; 11.7 MiB with the default ones, 8.0 of them the grid, 1.2 each store. Time: part
 // O(polygons * vertices^2), the last one O(all of them); tile O(cells + tiles); patch O(polygons * vertices^2 +
