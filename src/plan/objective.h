@@ -16,7 +16,7 @@
 #include "aisle/messages.h"
 #include "robot/vehicle.h"
 
-#define AISLE_OBJECTIVE_RISK_WEIGHT 8.0
+#define AISLE_OBJECTIVE_RISK_WEIGHT 15.0
 #define AISLE_OBJECTIVE_DENSITY_MAX 16.0
 #define AISLE_GRAVITY 9.81 // m/s2
 

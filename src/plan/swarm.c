@@ -42,16 +42,13 @@ static double shortfall(aisle_swarm *self, const aisle_spline_sample *at, double
 static aisle_pso_cost score(aisle_swarm *self) {
     double violation = 0.0;
     double value = 0.0;
+    double before = 0.0; // distance to the sample before
     double curvature_max = self->space->vehicle->curvature_max;
     for (uint32_t i = 0; i < self->samples; i++) {
         const aisle_spline_sample *at = &self->sample[i];
-        double ds = 0.0;
-        if (i > 0) {
-            ds += 0.5 * aisle_vec2_distance(at->p, self->sample[i - 1U].p);
-        }
-        if (i + 1U < self->samples) {
-            ds += 0.5 * aisle_vec2_distance(at->p, self->sample[i + 1U].p);
-        }
+        double after = i + 1U < self->samples ? aisle_vec2_distance(at->p, self->sample[i + 1U].p) : 0.0;
+        double ds = 0.5 * (before + after);
+        before = after;
         double clearance;
         double curvature = aisle_spline_curvature(at);
         violation += ds * shortfall(self, at, &clearance);
@@ -81,7 +78,7 @@ static aisle_pso_cost cost(void *ctx, const float *x) {
     if (aisle_spline_fit(self->spline, self->kind, points, n) != AISLE_OK) {
         return (aisle_pso_cost){INFINITY, INFINITY};
     }
-    aisle_spline_resample(self->spline, self->samples, self->sample);
+    aisle_spline_spread(self->spline, self->samples, self->sample);
     aisle_pso_cost scored = score(self);
     if (self->pso.evals == 0U) { // the first particle stands at the seed
         self->seed_cost = scored;

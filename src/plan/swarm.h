@@ -3,7 +3,8 @@
 // Variables: offsets (m) of up to AISLE_SWARM_VIAS via-points from points spread along the seed polyline by arc length,
 // each in a box of
 // +- AISLE_SWARM_REACH. A particle is the spline (or polyline) through start, vias and goal. PAPERS 1: particle =
-// via-points, linear or not-a-knot cubic interpolation; ours: samples by arc length from the very start. Cost pair:
+// via-points, linear or not-a-knot cubic interpolation; ours: samples from the very start, each weighed by the way to its
+// neighbours. Cost pair:
 // violation = metres of path whose clearance is short of the margin, by how much (sum of shortfall * ds), plus
 // curvature above curvature_max; value = integral of the objective's density at clearance and curvature. Where the
 // field leaves the margin in doubt the exact gap decides. The first particle is the seed itself; the verifier still

@@ -294,3 +294,18 @@ void aisle_spline_resample(const aisle_spline *self, uint32_t count, aisle_splin
     }
     out[count - 1U] = aisle_spline_at(self, self->u[self->n - 1U]);
 }
+
+void aisle_spline_spread(const aisle_spline *self, uint32_t count, aisle_spline_sample *out) {
+    AISLE_ASSERT(count >= 2U);
+    const double end = self->u[self->n - 1U];
+    const double spacing = end / (double)(count - 1U);
+    uint32_t i = 0;
+    for (uint32_t span = 0; span + 1U < self->n; span++) {
+        const piece s = piece_of(self, span);
+        const double until = span + 2U < self->n ? self->u[span + 1U] : (double)INFINITY;
+        for (; i < count && (double)i * spacing < until; i++) {
+            out[i] = sample_of(&s, (double)i * spacing - self->u[span]);
+        }
+    }
+    out[count - 1U].p = self->p[self->n - 1U]; // whatever the polynomial's rounding
+}

@@ -49,4 +49,8 @@ double aisle_spline_length(const aisle_spline *self);
 // stays above a tenth of its mean; first and last point exact; count >= 2. O(16 n + count): spans are cut in 16, within
 // a cut the speed is taken to change evenly.
 void aisle_spline_resample(const aisle_spline *self, uint32_t count, aisle_spline_sample *out);
+
+// Fills out[count] with samples equally spaced in the parameter, which is about the arc length: for sums along the way
+// that weigh each sample by the distance to its neighbours. First and last point exact; count >= 2. O(n + count).
+void aisle_spline_spread(const aisle_spline *self, uint32_t count, aisle_spline_sample *out);
 #endif
