@@ -20,6 +20,10 @@ void aisle_space_carve(aisle_space *self, aisle_arena *arena, uint32_t cells) {
     self->cells = cells;
     self->known_from = cells / 64U + 1U; // an arena's memory is 0
     self->known_end = 0;
+    self->root = (float *)aisle_arena_take(arena, AISLE_SPACE_ROOTS, sizeof(float));
+    for (uint32_t q = 0; self->root != NULL && q < AISLE_SPACE_ROOTS; q++) {
+        self->root[q] = (float)sqrt((double)q);
+    }
 }
 
 // The lever, and discs of equal radius along the body's x axis that together hold the footprint's box.
@@ -43,6 +47,7 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
     self->grid = aisle_layout_grid(layout);
     self->vehicle = vehicle;
     self->mode = mode;
+    self->per_metre = 1.0 / self->grid->lattice.res;
     self->keep = vehicle->margin + AISLE_SPACE_SLACK;
     self->reach = self->keep + (mode == AISLE_SPACE_FREE_TURN ? vehicle->outer_radius : vehicle->inner_radius);
     // A scanned cell is an obstacle all over and holds a disc of half its side; a cell some polygon touches may be
@@ -284,14 +289,18 @@ bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p) {
     return self->grid->field[aisle_lattice_cell(&self->grid->lattice, p, &inside)] >= self->far_field && inside;
 }
 
+static double root_of(const aisle_space *self, uint16_t field) {
+    return field < AISLE_SPACE_ROOTS ? (double)self->root[field] : sqrt((double)field);
+}
+
 // Distance from p to occupied cells, interpolated between the four centres around p.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p) {
     if (aisle_space_is_far(self, p)) {
         return self->far_clearance;
     }
     const aisle_lattice *lattice = &self->grid->lattice;
-    double fx = aisle_clamp((p.x - lattice->x0) / lattice->res - 0.5, 0.0, (double)(lattice->w - 1U));
-    double fy = aisle_clamp((p.y - lattice->y0) / lattice->res - 0.5, 0.0, (double)(lattice->h - 1U));
+    double fx = aisle_clamp((p.x - lattice->x0) * self->per_metre - 0.5, 0.0, (double)(lattice->w - 1U));
+    double fy = aisle_clamp((p.y - lattice->y0) * self->per_metre - 0.5, 0.0, (double)(lattice->h - 1U));
     uint32_t ix = (uint32_t)fx;
     uint32_t iy = (uint32_t)fy;
     uint32_t right = ix + 1U < lattice->w ? 1U : 0U;
@@ -299,8 +308,8 @@ double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p) {
     const uint16_t *at = self->grid->field + (size_t)iy * lattice->w + ix;
     double tx = fx - (double)ix;
     double ty = fy - (double)iy;
-    double low = sqrt((double)at[0]) * (1.0 - tx) + sqrt((double)at[right]) * tx;
-    double high = sqrt((double)at[up]) * (1.0 - tx) + sqrt((double)at[up + right]) * tx;
+    double low = root_of(self, at[0]) * (1.0 - tx) + root_of(self, at[right]) * tx;
+    double high = root_of(self, at[up]) * (1.0 - tx) + root_of(self, at[up + right]) * tx;
     double cells = low * (1.0 - ty) + high * ty;
     return (cells - 0.5) * lattice->res - self->vehicle->inner_radius;
 }

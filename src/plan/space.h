@@ -5,7 +5,7 @@
 // disc does not fit. Everything keeps margin + AISLE_SPACE_SLACK from obstacles; the slack is what the verifier needs
 // for its sagittas. Order of tests: bounds from the distance field first, the exact gap only where they leave a doubt
 // (near contours). The verifier shares none of this.
-// Memory: one bit a cell. Time: O(1) from the field; O(obstacles near) for an exact test. Every test adds its work
+// Memory: one bit a cell and 16 KiB. Time: O(1) from the field; O(obstacles near) for an exact test. Every test adds its work
 // units to *units.
 #ifndef AISLE_PLAN_SPACE_H
 #define AISLE_PLAN_SPACE_H
@@ -17,6 +17,7 @@
 #define AISLE_SPACE_SLACK 5e-4 // m
 #define AISLE_SPACE_DEPTH_MAX 3U
 #define AISLE_SPACE_PIECE 0.5   // m, longest sweep given to one exact test
+#define AISLE_SPACE_ROOTS 4096U // field values whose square root is tabulated
 #define AISLE_CLEARANCE_CAP 2.0 // m, a larger clearance is told as this
 
 typedef enum aisle_space_mode { AISLE_SPACE_FREE_TURN, AISLE_SPACE_ALONG } aisle_space_mode;
@@ -28,6 +29,8 @@ typedef struct aisle_space {
     aisle_space_mode mode;
     double keep;         // margin + slack, m
     double reach;        // FREE_TURN: outer radius + keep; ALONG: inner radius + keep (necessary, not sufficient)
+    float *root;         // [AISLE_SPACE_ROOTS] by field value
+    double per_metre;    // cells
     uint64_t *cell_free; // [cells / 64 + 1] bits: an exact test of this cell said yes
     uint32_t cells;
     uint32_t known_from, known_end; // words of cell_free outside [known_from, known_end) are 0
@@ -82,7 +85,8 @@ bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p);
 
 // About the clearance of the footprint driven through p: the field, interpolated, less the inner radius;
 // far_clearance where far.
-// Cheap; for costs only.
+// Cheap; for costs, but never above the truth by as much as a cell's side: the four centres' distances are told right,
+// and p lies within half a diagonal of their weighted mean as an obstacle does of its cell's centre.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
 // Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at

@@ -26,6 +26,9 @@ static double shortfall(aisle_swarm *self, const aisle_spline_sample *at, double
         return 0.0;
     }
     *clearance = aisle_space_clearance_about(space, at->p);
+    if (*clearance - space->grid->lattice.res >= space->keep + vehicle->outer_radius - vehicle->inner_radius) {
+        return 0.0; // the interpolation errs by less than a cell (space.h)
+    }
     double lower = aisle_grid_gap_lower(space->grid, at->p);
     if (lower - vehicle->outer_radius >= space->keep) {
         return 0.0;
