@@ -12,6 +12,7 @@ typedef struct aisle_leg {
     bool use_swarm;        // build from the swarm's best, else from the seed
     aisle_space_mode mode; // the body the seed was found with
     double tangent_radius; // m, the seed is the shortest way of such a disc (tangent.h), its corners arcs; 0: not
+    bool is_slit;          // the grid saw no way: the seed is the shortest one
     bool is_clear;         // of obstacles by the creep clearance: no swarm makes it safer
     double bound;          // m, no way of this leg is shorter
     uint32_t attempt;      // at its seed

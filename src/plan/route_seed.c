@@ -120,7 +120,11 @@ aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
         return give_up(self, (double)self->seed.search.open_capacity);
     }
     if (st == AISLE_PARTIAL) {
-        if (leg->attempt + 1U == AISLE_ROUTE_ATTEMPTS_CHEAP && self->way_index == 0U) {
+        bool cheap_ones_failed = leg->attempt + 1U == AISLE_ROUTE_ATTEMPTS_CHEAP;
+        if (cheap_ones_failed && self->way_index > 0U && aisle_vehicle_is_disc(self->vehicle) &&
+            aisle_layout_has_blocks(self->layout)) {
+            aisle_route_begin_slit(self);
+        } else if (cheap_ones_failed && self->way_index == 0U) {
             aisle_route_begin_why(self, coarse_stride(self)); // it goes on with the others if there can be a way
         } else {
             aisle_route_begin_seed(self, leg->attempt + 1U);

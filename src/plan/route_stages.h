@@ -64,6 +64,8 @@ void aisle_route_judge(aisle_route *self, bool by_name);
 
 // route_tangent.c
 void aisle_route_begin_tangent(aisle_route *self);
+// A leg on which the grid sees no way though there is one: its shortest way is the seed.
+void aisle_route_begin_slit(aisle_route *self);
 aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units);
 
 // route_seed.c

@@ -17,7 +17,8 @@ static const double searched[] = {0.0, 0.1, 0.4, 1.0};
 
 static double radius_at(const aisle_route *self, double part) {
     const aisle_vehicle *vehicle = self->vehicle;
-    return vehicle->inner_radius + self->room + part * (vehicle->outer_radius - vehicle->inner_radius);
+    double room = self->legs[self->leg].is_slit ? self->space.keep : self->room;
+    return vehicle->inner_radius + room + part * (vehicle->outer_radius - vehicle->inner_radius);
 }
 
 static void search(aisle_route *self, uint32_t n) {
@@ -39,6 +40,11 @@ void aisle_route_begin_tangent(aisle_route *self) {
     } else {
         search(self, BOUND);
     }
+}
+
+void aisle_route_begin_slit(aisle_route *self) {
+    self->legs[self->leg].is_slit = true;
+    search(self, TURNING);
 }
 
 // Takes the way found, pulled about circles of this radius, as the leg's. False: it is not free for such a disc.
@@ -78,12 +84,14 @@ static bool take(aisle_route *self) {
 
 static void go_on(aisle_route *self, bool found) {
     aisle_leg *leg = &self->legs[self->leg];
-    if (self->way->kind == AISLE_WAY_GRID) {
+    if (self->way->kind == AISLE_WAY_GRID && !leg->is_slit) {
         aisle_route_begin_seed(self, 0);
     } else if (found && take(self)) {
-        leg->is_clear = self->way->kind == AISLE_WAY_CLEAR;
+        leg->is_clear = self->way->kind == AISLE_WAY_CLEAR && !leg->is_slit;
         self->point_count += leg->count;
         aisle_route_next_leg(self);
+    } else if (leg->is_slit) {
+        self->stage = AISLE_ROUTE_DROP;
     } else if (self->tangent_search < TURNING) {
         bool straight_on = aisle_vehicle_is_disc(self->vehicle) || self->is_wide;
         search(self, straight_on ? TURNING : self->tangent_search + 1U);
@@ -105,7 +113,9 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     if (self->tangent_search == BOUND && self->way_index == 0U && st != AISLE_PARTIAL) {
         self->legs[self->leg].bound = self->tangent.bound;
     }
-    if (st == AISLE_PARTIAL) { // nor is there one for anything wider: the grid is asked as well, and then why
+    if (st == AISLE_PARTIAL &&
+        !self->legs[self->leg]
+             .is_slit) { // nor is there one for anything wider: the grid is asked as well, and then why
         aisle_route_begin_seed(self, 0);
     } else {
         go_on(self, st == AISLE_OK);

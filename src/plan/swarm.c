@@ -7,7 +7,7 @@
 
 #define SPREAD 0.15F        // of the box, where the other particles start
 #define VIA_SPACING 2.0     // m, wished between via-points
-#define SAMPLE_SPACING 0.15 // m, wished between samples
+#define SAMPLE_SPACING 0.25 // m, wished between samples
 #define SEED_DEFAULT 20180617U
 
 void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
