@@ -243,7 +243,7 @@ aisle_status aisle_route_step_swarm(aisle_route *self, uint32_t units) {
         return AISLE_BUSY;
     }
     aisle_leg *leg = &self->legs[self->leg];
-    self->swarm_evals += self->swarm.pso.evals;
+    self->swarm_evals += self->swarm.pso.evals + self->swarm.polish_evals;
     leg->via_count = aisle_swarm_best(&self->swarm, leg->via);
     leg->use_swarm = leg->via_count > 0U;
     self->leg++;

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #define SPREAD 0.15F        // of the box, where the other particles start
-#define VIA_SPACING 2.0     // m, wished between via-points
+#define VIA_SPACING 1.5     // m, wished between via-points
 #define SAMPLE_SPACING 0.25 // m, wished between samples
 #define SEED_DEFAULT 20180617U
 
@@ -154,6 +154,8 @@ aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, cons
     self->start = points[0];
     self->goal = points[count - 1U];
     self->units = 0;
+    self->polishing = false;
+    self->polish_evals = 0;
     place_vias(self, points, count, length);
     configure(self, options, length);
     aisle_status st = aisle_pso_start(&self->pso, &self->config, self->work,
@@ -162,19 +164,64 @@ aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, cons
     return AISLE_OK;
 }
 
+// ---- polish
+
+static void begin_polish(aisle_swarm *self) {
+    const float *best = aisle_pso_best(&self->pso);
+    self->polishing = best != NULL;
+    self->polish_evals = self->at = 0;
+    self->moved = false;
+    self->step = AISLE_SWARM_POLISH_STEP;
+    self->best_cost = self->pso.best_cost;
+    for (uint32_t i = 0; best != NULL && i < 2U * self->vias; i++) {
+        self->best[i] = best[i];
+    }
+}
+
+// One component one step either way; a step that helps is tried again. A round that helps nowhere halves the step.
+static aisle_status polish(aisle_swarm *self) {
+    if (self->polish_evals >= AISLE_SWARM_POLISH_EVALS || self->step < AISLE_SWARM_POLISH_LAST) {
+        return AISLE_OK;
+    }
+    uint32_t i = self->at / 2U;
+    float before = self->best[i];
+    self->best[i] = before + (self->at % 2U == 0U ? self->step : -self->step);
+    aisle_pso_cost there = cost(self, self->best);
+    self->polish_evals++;
+    if (aisle_pso_better(there, self->best_cost)) {
+        self->best_cost = there;
+        self->moved = true;
+        return AISLE_BUSY;
+    }
+    self->best[i] = before;
+    self->at++;
+    if (self->at == 4U * self->vias) {
+        self->at = 0;
+        self->step *= self->moved ? 1.0F : 0.5F;
+        self->moved = false;
+    }
+    return AISLE_BUSY;
+}
+
 aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent) {
     aisle_status st = AISLE_BUSY;
     while (st == AISLE_BUSY && self->units < units) {
-        st = aisle_pso_step(&self->pso, 1U);
+        if (self->polishing) {
+            st = polish(self);
+        } else if (aisle_pso_step(&self->pso, 1U) != AISLE_BUSY) {
+            begin_polish(self);
+            st = self->polishing ? AISLE_BUSY : AISLE_OK;
+        }
     }
     *spent += self->units;
     self->units = 0;
-    return st == AISLE_BUSY ? AISLE_BUSY : AISLE_OK;
+    return st;
 }
 
 uint32_t aisle_swarm_best(const aisle_swarm *self, aisle_vec2 *points) {
-    const float *best = aisle_pso_best(&self->pso);
-    if (best == NULL || self->pso.best_cost.violation > 0.0F) {
+    const float *best = self->polishing ? self->best : aisle_pso_best(&self->pso);
+    float violation = self->polishing ? self->best_cost.violation : self->pso.best_cost.violation;
+    if (best == NULL || violation > 0.0F) {
         return 0;
     }
     return via_points(self, best, points);

@@ -22,8 +22,11 @@
 #define AISLE_SWARM_VIAS 24U
 #define AISLE_SWARM_REACH 1.0 // m
 #define AISLE_SWARM_PARTICLES 24U
-#define AISLE_SWARM_EVALS 1500U
-#define AISLE_SWARM_STALL 480U
+#define AISLE_SWARM_EVALS 700U
+#define AISLE_SWARM_STALL 240U
+#define AISLE_SWARM_POLISH_EVALS 480U
+#define AISLE_SWARM_POLISH_STEP 0.2F   // m, the first
+#define AISLE_SWARM_POLISH_LAST 0.003F // m, a smaller one ends it
 #define AISLE_SWARM_SAMPLES_MAX 512U
 #define AISLE_SWARM_SAMPLES_PER_UNIT 4U
 
@@ -40,8 +43,14 @@ typedef struct aisle_swarm {
     aisle_pso pso;
     float *work; // [AISLE_PSO_WORK_LEN(2 * AISLE_SWARM_VIAS, AISLE_SWARM_PARTICLES)]
     aisle_spline *spline;
-    aisle_spline_sample *sample; // [AISLE_SWARM_SAMPLES_MAX]
-    aisle_pso_cost seed_cost;    // of the first particle, once it was scored: a counter for tests and tables
+    aisle_spline_sample *sample;      // [AISLE_SWARM_SAMPLES_MAX]
+    float best[2 * AISLE_SWARM_VIAS]; // polish: where it stands
+    aisle_pso_cost best_cost;
+    float step;  // m
+    uint32_t at; // 2 * component, + 1 for the way back
+    uint32_t polish_evals;
+    bool polishing, moved;    // moved: in this round
+    aisle_pso_cost seed_cost; // of the first particle, once it was scored: a counter for tests and tables
     uint32_t units;
 } aisle_swarm;
 

@@ -6,7 +6,11 @@
 
 #include <math.h>
 
-#define RESOLUTION 5e-4 // m, of a slide
+#define RESOLUTION 5e-4   // m, of a slide
+#define EXACT_SPACING 0.4 // m
+#define EXACT_PASSES 3U
+#define SHIFT 0.16       // m, the first of a shift's steps, which are halved
+#define SHIFT_LAST 0.004 // m, the last is above it
 #define POINT_MOVES_UNITS 8U
 
 void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_objective *objective, double arc_radius,
@@ -22,7 +26,28 @@ void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_ob
                          .cost = -1.0};
 }
 
+// The leg's cost by exact gaps of the body, every EXACT_SPACING.
+static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
+    double length = aisle_vec2_distance(a, b);
+    double samples = floor(length / EXACT_SPACING) + 2.0;
+    double theta = aisle_atan2(b.y - a.y, b.x - a.x);
+    double sum = 0.0;
+    for (double i = 0.5; i < samples; i += 1.0) {
+        aisle_vec2 p = aisle_vec2_lerp(a, b, i / samples);
+        double clearance = self->space->far_clearance;
+        if (!aisle_space_is_far(self->space, p)) {
+            clearance = aisle_space_gap(self->space, (aisle_pose2){p.x, p.y, theta}, clearance, NULL);
+            self->units++;
+        }
+        sum += aisle_objective_density(self->objective, clearance, 0.0);
+    }
+    return sum * length / samples;
+}
+
 static double leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
+    if (self->exact) {
+        return exact_leg_cost(self, a, b);
+    }
     return aisle_leg_cost(self->space, self->objective, a, b, &self->units);
 }
 
@@ -142,6 +167,61 @@ static void slide_some(aisle_taut *self, uint32_t i, uint32_t to, uint32_t other
     }
 }
 
+// Cost of the legs that points first..last have a part in.
+static double cost_about(aisle_taut *self, uint32_t first, uint32_t last) {
+    double sum = 0.0;
+    for (uint32_t i = first - 1U; i <= last; i++) {
+        sum += leg_cost(self, self->points[i], self->points[i + 1U]);
+    }
+    return sum;
+}
+
+static bool are_free_about(aisle_taut *self, uint32_t first, uint32_t last) {
+    bool free = true;
+    for (uint32_t i = first; free && i <= last; i++) {
+        free = may_turn(self, self->points[i]);
+    }
+    for (uint32_t i = first - 1U; free && i <= last; i++) {
+        free = free_between(self, self->points[i], self->points[i + 1U]);
+    }
+    return free;
+}
+
+// Other densities: moves points first..last together by `by`, if that costs less.
+static bool try_shift(aisle_taut *self, uint32_t first, uint32_t last, aisle_vec2 by, double *cost) {
+    for (uint32_t i = first; i <= last; i++) {
+        self->points[i] = aisle_vec2_add(self->points[i], by);
+    }
+    double after = cost_about(self, first, last);
+    if (after < *cost * (1.0 - AISLE_TAUT_GAIN) && are_free_about(self, first, last)) {
+        *cost = after;
+        return true;
+    }
+    for (uint32_t i = first; i <= last; i++) {
+        self->points[i] = aisle_vec2_sub(self->points[i], by);
+    }
+    return false;
+}
+
+// Shifts across the way, to the middle between obstacles: a leg as a whole, or one corner.
+static void shift_across(aisle_taut *self, uint32_t first, uint32_t last) {
+    aisle_vec2 along = aisle_vec2_sub(self->points[last + 1U], self->points[first - 1U]);
+    if (last > first) {
+        along = aisle_vec2_sub(self->points[last], self->points[first]);
+    }
+    double length = aisle_vec2_length(along);
+    if (length < 1e-6) {
+        return;
+    }
+    aisle_vec2 across = aisle_vec2_of(-along.y / length, along.x / length);
+    double cost = cost_about(self, first, last);
+    for (double step = SHIFT; step > SHIFT_LAST; step *= 0.5) {
+        if (!try_shift(self, first, last, aisle_vec2_scale(across, step), &cost)) {
+            (void)try_shift(self, first, last, aisle_vec2_scale(across, -step), &cost);
+        }
+    }
+}
+
 // Replaces b by two points at the same fraction of both legs, as far out as the straight way between them is free.
 static bool try_cut(aisle_taut *self, uint32_t i) {
     if (self->count >= self->capacity) {
@@ -178,7 +258,19 @@ static bool try_cut(aisle_taut *self, uint32_t i) {
     return false;
 }
 
+static void shift_about(aisle_taut *self, uint32_t i) {
+    shift_across(self, i, i);
+    if (i + 2U < self->count) {
+        shift_across(self, i, i + 1U);
+    }
+}
+
 static void improve_point(aisle_taut *self, uint32_t i) {
+    if (self->exact) {
+        shift_about(self, i);
+        self->at++;
+        return;
+    }
     if (try_remove(self, i)) {
         return;
     }
@@ -188,11 +280,32 @@ static void improve_point(aisle_taut *self, uint32_t i) {
     } else {
         slide_some(self, i, i - 1U, i + 1U);
         slide_some(self, i, i + 1U, i - 1U);
+        shift_about(self, i);
     }
     if (try_cut(self, i)) {
         self->at++;
     }
     self->at++;
+}
+
+// A pass has ended: another one, by exact gaps at last, or the end.
+static aisle_status next_pass(aisle_taut *self) {
+    double cost = span_cost(self, 0, self->count - 1U);
+    bool settled = self->cost >= 0.0 && self->cost - cost <= AISLE_TAUT_GAIN * cost;
+    uint32_t most = self->exact ? EXACT_PASSES : AISLE_TAUT_PASSES;
+    self->cost = cost;
+    self->at = 1;
+    self->pass++;
+    if (!settled && self->pass < most && self->count > 2U) {
+        return AISLE_BUSY;
+    }
+    if (self->exact || aisle_objective_is_length(self->objective) || self->count <= 2U) {
+        return AISLE_OK;
+    }
+    self->exact = true;
+    self->cost = -1.0;
+    self->pass = 0;
+    return AISLE_BUSY;
 }
 
 aisle_status aisle_taut_step(aisle_taut *self, uint32_t units, uint32_t *spent) {
@@ -201,15 +314,8 @@ aisle_status aisle_taut_step(aisle_taut *self, uint32_t units, uint32_t *spent) 
         if (self->at + 1U < self->count) {
             improve_point(self, self->at);
             self->units += POINT_MOVES_UNITS;
-            continue;
-        }
-        double cost = span_cost(self, 0, self->count - 1U);
-        bool settled = self->cost >= 0.0 && self->cost - cost <= AISLE_TAUT_GAIN * cost;
-        self->cost = cost;
-        self->at = 1;
-        self->pass++;
-        if (settled || self->pass >= AISLE_TAUT_PASSES || self->count <= 2U) {
-            st = AISLE_OK;
+        } else {
+            st = next_pass(self);
         }
     }
     *spent += self->units;

@@ -1,13 +1,14 @@
 // taut.h - pulls a free polyline taut: shorter (or less costly), never less free. Level 4.
 //
 // Local moves on one point b between a and c, each tested by straight free sweeps and kept only if the cost falls:
-//     remove b;  slide b towards a (then b-c must be free);  slide b towards c;  cut the corner at b by two points.
+//     remove b;  shift b, or the leg b-c as a whole, across the way (other densities than length);  slide b towards a (then b-c must be free);  slide b towards c;  cut the corner at b by two points.
 // ALONG: points go only where the turning disc fits, since the body must turn there.
 // Cost: the objective's density along the legs, less what a corner arc of radius `arc_radius` saves at each point (2 T
 // - R phi with T the tangent length), so that points already on one arc are not split for nothing. For pure length the
 // slides go as far as they may (halving down to 0.5 mm): a point that cannot move has both legs touching the same round
 // obstacle, which is the local optimum there. For other densities slides by 1/2, 1/4, 1/8 of the leg. Ends when a whole
-// pass gains less than AISLE_TAUT_GAIN of the cost, or after AISLE_TAUT_PASSES.
+// pass gains less than AISLE_TAUT_GAIN of the cost, or after AISLE_TAUT_PASSES; then, for other densities, shifts once
+// more by exact gaps, since the field tells the middle of an aisle to half a cell only.
 // Memory: the caller's points. Time: a pass is O(points * sweeps); sliced by point.
 #ifndef AISLE_PLAN_TAUT_H
 #define AISLE_PLAN_TAUT_H
@@ -24,6 +25,7 @@ typedef struct aisle_taut {
     aisle_vec2 *points; // [capacity], the first and last stay
     uint32_t count, capacity;
     uint32_t at, pass;
+    bool exact;        // costs by exact gaps, the last passes' way
     double arc_radius; // m
     double cost;       // of the whole polyline when the pass began
     uint32_t units;    // since the last step
