@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#define RISK_SPACING 0.25      // m, between places looked at for the risk
 #define CORNER_RADIUS 1.0      // m, wished where it is free
 #define CORNER_RADIUS_MIN 0.05 // m
 #define SPLINE_SPACING 0.4     // m, between samples
@@ -162,10 +163,34 @@ static bool may_join(const aisle_compose *self, const aisle_waypoint_msg *a, con
     return straight && same_class && b->flags == 0 && !is_turn(a) && aisle_piece_length(a, c) <= longest;
 }
 
-// Adds up each leg's measured cost, by the pieces before they are joined: what the comparison of seed and swarm goes by.
+// Mean of density and risk over a piece that is near something, by exact gaps on it: its clearance is the least on it.
+static void sample_piece(aisle_compose *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                         double length, double *density, double *risk) {
+    const aisle_compose_request *request = &self->request;
+    double creep = request->space->vehicle->creep_clearance;
+    double samples = floor(length / RISK_SPACING) + 1.0;
+    double costs = 0.0;
+    double risks = 0.0;
+    for (double i = 0.5; i < samples; i += 1.0) {
+        double gap = aisle_space_gap(request->space, aisle_piece_at(from, to, i / samples), creep, NULL);
+        costs += aisle_objective_density(request->objective, gap, (double)to->curvature);
+        risks += 1.0 - gap / creep; // creep > 0, gap <= creep
+        self->units++;
+    }
+    *density = costs / samples;
+    *risk = risks / samples;
+}
+
+// Adds up risk and each leg's measured cost, by the pieces before they are joined: what seed and swarm are compared by.
 static void value_piece(aisle_compose *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
-    self->value += aisle_piece_length(from, to) *
-                   aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
+    double length = aisle_piece_length(from, to);
+    double density = aisle_objective_density(self->request.objective, (double)to->clearance, (double)to->curvature);
+    double risk = 0.0;
+    if (length > 0.0 && (double)to->clearance < self->request.space->vehicle->creep_clearance) {
+        sample_piece(self, from, to, length, &density, &risk);
+    }
+    self->value += length * density;
+    self->risk += length * risk;
     if ((to->flags & AISLE_WAYPOINT_GOAL) != 0 && self->leg < self->request.leg_count) {
         aisle_leg *leg = &self->request.legs[self->leg++];
         *(leg->use_swarm ? &leg->swarm_value : &leg->seed_value) = self->value;
@@ -299,7 +324,7 @@ aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_reques
     }
     self->longest = aisle_max(AISLE_COMPOSE_PIECE, raw_length(self) / (double)AISLE_COMPOSE_PIECES);
     self->leg = 0;
-    self->value = 0.0;
+    self->value = self->risk = 0.0;
     self->path->waypoints[0] = self->raw[0];
     self->path->num_waypoints = 1;
     take_piece(self, 1);
@@ -333,7 +358,7 @@ static aisle_status finish(aisle_compose *self) {
     path->length = (float)sum.length;
     path->duration = (float)sum.duration;
     path->energy = (float)sum.energy;
-    path->risk = (float)sum.risk;
+    path->risk = sum.length > 0.0 ? (float)(self->risk / sum.length) : 0.0F;
     self->units += (uint32_t)(uint16_t)path->num_waypoints;
     return AISLE_OK;
 }

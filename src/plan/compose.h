@@ -45,7 +45,8 @@ typedef struct aisle_compose {
     uint32_t depth;                   // of ends
     double longest;                   // m, a part near obstacles
     uint32_t leg;                     // being laid, later: whose value is being summed up
-    double value;
+    double value;                     // of the leg so far
+    double risk;                      // m, of the path so far: length times risk
     uint32_t units;
 } aisle_compose;
 

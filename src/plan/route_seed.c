@@ -99,6 +99,13 @@ void aisle_route_next_leg(aisle_route *self) {
     }
 }
 
+void aisle_route_begin_taut(aisle_route *self, uint32_t count) {
+    double arc = self->vehicle->outer_radius + self->vehicle->margin;
+    aisle_taut_start(&self->taut, &self->space, &self->objective, arc, self->points + self->legs[self->leg].first,
+                     count, AISLE_SEED_POINTS_MAX);
+    self->stage = AISLE_ROUTE_TAUT;
+}
+
 static aisle_status give_up(aisle_route *self, double needed) {
     return aisle_route_give_way_up(self, AISLE_STATUS_LIMIT, 0, needed,
                                    aisle_route_place(&self->request.goals[self->leg]));
@@ -130,10 +137,7 @@ aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
             aisle_route_begin_seed(self, leg->attempt + 1U);
         }
     } else if (st == AISLE_OK) {
-        double arc = self->vehicle->outer_radius + self->vehicle->margin;
-        aisle_taut_start(&self->taut, &self->space, &self->objective, arc, self->points + leg->first,
-                         self->seed.point_count, AISLE_SEED_POINTS_MAX);
-        self->stage = AISLE_ROUTE_TAUT;
+        aisle_route_begin_taut(self, self->seed.point_count);
     }
     return AISLE_BUSY;
 }

@@ -76,6 +76,8 @@ void aisle_route_next_leg(aisle_route *self);
 // Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
 void aisle_route_begin_seed(aisle_route *self, uint32_t n);
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units);
+// Pulls the leg's polyline of `count` points taut.
+void aisle_route_begin_taut(aisle_route *self, uint32_t count);
 aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 
 // route_why.c

@@ -88,6 +88,11 @@ static void go_on(aisle_route *self, bool found) {
         aisle_route_begin_seed(self, 0);
     } else if (found && take(self)) {
         leg->is_clear = self->way->kind == AISLE_WAY_CLEAR && !leg->is_slit;
+        if (leg->is_slit) { // only a seed: to be pulled by the way's own density
+            leg->tangent_radius = 0.0;
+            aisle_route_begin_taut(self, leg->count);
+            return;
+        }
         self->point_count += leg->count;
         aisle_route_next_leg(self);
     } else if (leg->is_slit) {

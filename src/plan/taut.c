@@ -9,8 +9,11 @@
 #define RESOLUTION 5e-4   // m, of a slide
 #define EXACT_SPACING 0.4 // m
 #define EXACT_PASSES 3U
-#define SHIFT 0.16       // m, the first of a shift's steps, which are halved
-#define SHIFT_LAST 0.004 // m, the last is above it
+#define SHIFT 0.16       // m, the first of a shift's steps, which are halved; the field tells no finer ones than
+#define SHIFT_FIELD 0.03 // m, than this; by exact gaps they begin and end at
+#define SHIFT_EXACT 0.04 // m
+#define SHIFT_LAST 0.004 // m
+#define SETTLED 2e-4     // of the cost, where it is not the length: a pass that gains less is the last
 #define POINT_MOVES_UNITS 8U
 
 void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_objective *objective, double arc_radius,
@@ -215,7 +218,8 @@ static void shift_across(aisle_taut *self, uint32_t first, uint32_t last) {
     }
     aisle_vec2 across = aisle_vec2_of(-along.y / length, along.x / length);
     double cost = cost_about(self, first, last);
-    for (double step = SHIFT; step > SHIFT_LAST; step *= 0.5) {
+    double last_step = self->exact ? SHIFT_LAST : SHIFT_FIELD;
+    for (double step = self->exact ? SHIFT_EXACT : SHIFT; step > last_step; step *= 0.5) {
         if (!try_shift(self, first, last, aisle_vec2_scale(across, step), &cost)) {
             (void)try_shift(self, first, last, aisle_vec2_scale(across, -step), &cost);
         }
@@ -291,7 +295,8 @@ static void improve_point(aisle_taut *self, uint32_t i) {
 // A pass has ended: another one, by exact gaps at last, or the end.
 static aisle_status next_pass(aisle_taut *self) {
     double cost = span_cost(self, 0, self->count - 1U);
-    bool settled = self->cost >= 0.0 && self->cost - cost <= AISLE_TAUT_GAIN * cost;
+    double gain = aisle_objective_is_length(self->objective) ? AISLE_TAUT_GAIN : SETTLED;
+    bool settled = self->cost >= 0.0 && self->cost - cost <= gain * cost;
     uint32_t most = self->exact ? EXACT_PASSES : AISLE_TAUT_PASSES;
     self->cost = cost;
     self->at = 1;
