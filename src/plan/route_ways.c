@@ -5,7 +5,7 @@
 #include <math.h>
 
 #define CREEP_SPARE 2e-3      // m, what is told of a clearance may be lower than the truth by less
-#define RISK_STEP 1e-3        // risks nearer to each other than this are alike
+#define RISK_STEP 1e-4        // risks nearer to each other than this are alike
 #define LENGTH_SPAN 1048576.0 // m, no path is so long
 
 // What each objective tries, in order. The same candidates for fastest and least energy, so that neither can be beaten
@@ -31,6 +31,9 @@ static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
     case AISLE_OPTIONS_SHORTEST:
         return n < sizeof shortest / sizeof shortest[0] ? &shortest[n] : NULL;
     case AISLE_OPTIONS_SAFEST:
+        if (!aisle_vehicle_is_disc(self->vehicle)) { // whose clear ways are found in fewer places
+            return n < sizeof quickest / sizeof quickest[0] ? &quickest[n] : NULL;
+        }
         return n < sizeof safest / sizeof safest[0] ? &safest[n] : NULL;
     default:
         return n < sizeof quickest / sizeof quickest[0] ? &quickest[n] : NULL;

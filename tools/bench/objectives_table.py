@@ -22,7 +22,7 @@ from aisle_tools import query, vehicle
 from aisle_tools.scenario import Scenario, read_scenario
 
 OBJECTIVES = ("shortest", "safest", "fastest", "least_energy")
-RISK_STEP = 1e-3  # as src/plan/route_ways.c: risks nearer to each other than this are alike
+RISK_STEP = 1e-4  # as src/plan/route_ways.c: risks nearer to each other than this are alike
 SAME = 1e-6  # of the value, more than rounding to float
 
 
@@ -42,7 +42,7 @@ def beats(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 def shown(objective: str, value: tuple[float, ...]) -> str:
     if objective == "safest":
-        return f"{value[0]:.3f} {value[1]:8.3f}"
+        return f"{value[0]:.4f} {value[1]:8.3f}"
     return f"{value[0]:.3f}"
 
 
