@@ -186,8 +186,9 @@ static aisle_status polish(aisle_swarm *self) {
     uint32_t i = self->at / 2U;
     float before = self->best[i];
     self->best[i] = before + (self->at % 2U == 0U ? self->step : -self->step);
-    aisle_pso_cost there = cost(self, self->best);
-    self->polish_evals++;
+    bool is_within = self->best[i] >= self->lo[i] && self->best[i] <= self->hi[i];
+    aisle_pso_cost there = is_within ? cost(self, self->best) : (aisle_pso_cost){INFINITY, INFINITY};
+    self->polish_evals += is_within ? 1U : 0U;
     if (aisle_pso_better(there, self->best_cost)) {
         self->best_cost = there;
         self->moved = true;
@@ -218,10 +219,13 @@ aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent
     return st;
 }
 
+aisle_pso_cost aisle_swarm_best_cost(const aisle_swarm *self) {
+    return self->polishing ? self->best_cost : self->pso.best_cost;
+}
+
 uint32_t aisle_swarm_best(const aisle_swarm *self, aisle_vec2 *points) {
     const float *best = self->polishing ? self->best : aisle_pso_best(&self->pso);
-    float violation = self->polishing ? self->best_cost.violation : self->pso.best_cost.violation;
-    if (best == NULL || violation > 0.0F) {
+    if (best == NULL || aisle_swarm_best_cost(self).violation > 0.0F) {
         return 0;
     }
     return via_points(self, best, points);

@@ -8,7 +8,8 @@
 // violation = metres of path whose clearance is short of the margin, by how much (sum of shortfall * ds), plus
 // curvature above curvature_max; value = integral of the objective's density at clearance and curvature. Where the
 // field leaves the margin in doubt the exact gap decides. The first particle is the seed itself; the verifier still
-// judges the end.
+// judges the end. Polish: when the swarm has ended its best place is improved component by component, by steps that are
+// halved when none helps: what a swarm finds near a ridge lies beside it.
 // Memory: work floats from the arena. Time: evaluations * samples; one unit per
 // AISLE_SWARM_SAMPLES_PER_UNIT samples and per exact gap.
 #ifndef AISLE_PLAN_SWARM_H
@@ -63,6 +64,9 @@ aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, cons
 
 // AISLE_BUSY, then AISLE_OK.
 aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent);
+
+// Cost of the best place so far, polish included; both INFINITY while there is none.
+aisle_pso_cost aisle_swarm_best_cost(const aisle_swarm *self);
 
 // Writes start, vias, goal of the best particle to points[AISLE_SWARM_VIAS + 2]; returns the count; 0 if nothing
 // feasible was seen.

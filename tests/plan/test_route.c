@@ -212,11 +212,11 @@ static void test_budgets_end_with_budget_before_the_first_proof_and_with_it_afte
 
 static void test_a_swarm_cut_short_leaves_enough_to_prove_its_path(void) {
     ask(AISLE_OPTIONS_PSO, 2.0, 4.0, 10.0, 4.0);
-    request.options.work_units = 9000;
+    request.options.work_units = 14000;
     (void)plan(700);
     int64_t some = route.swarm_evals;
     TEST_ASSERT_FALSE(proof()->told);
-    TEST_ASSERT_TRUE(route.spent <= 9000);
+    TEST_ASSERT_TRUE(route.spent <= 14000);
     request.options.work_units = 0;
     (void)plan(700);
     TEST_ASSERT_TRUE(some > 0 && some < route.swarm_evals);

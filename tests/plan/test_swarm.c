@@ -55,7 +55,7 @@ static aisle_status run(const aisle_vec2 *points, uint32_t count, uint32_t slice
 }
 
 static double best_value(void) {
-    return (double)swarm.pso.best_cost.value;
+    return (double)aisle_swarm_best_cost(&swarm).value;
 }
 
 static aisle_vec2 random_place(aisle_rng *rng) {
@@ -66,7 +66,7 @@ static aisle_vec2 random_place(aisle_rng *rng) {
     return p;
 }
 
-// ---- judge: the samples of a way as the header describes it, by arc length
+// ---- judge: the samples of a way as the header describes it
 
 static aisle_spline_sample samples[AISLE_SWARM_SAMPLES_MAX];
 
@@ -76,7 +76,7 @@ static void sample_best(void) {
     uint32_t n = aisle_swarm_best(&swarm, points);
     TEST_ASSERT_EQUAL_UINT32(swarm.vias + 2U, n);
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_spline_fit(&spline, swarm.kind, points, n));
-    aisle_spline_resample(&spline, swarm.samples, samples);
+    aisle_spline_spread(&spline, swarm.samples, samples);
 }
 
 // Least gap of the footprint at the samples, heading along the way.
@@ -117,10 +117,10 @@ static void test_the_best_is_never_worse_than_the_seed_and_keeps_the_margin_if_f
                 leg[i] = random_place(&rng);
             }
             TEST_ASSERT_EQUAL(AISLE_OK, run(leg, 3, 5000));
-            TEST_ASSERT_FALSE(aisle_pso_better(swarm.seed_cost, swarm.pso.best_cost));
+            TEST_ASSERT_FALSE(aisle_pso_better(swarm.seed_cost, aisle_swarm_best_cost(&swarm)));
             aisle_vec2 points[AISLE_SWARM_VIAS + 2U];
             if (aisle_swarm_best(&swarm, points) == 0) {
-                TEST_ASSERT_TRUE(swarm.pso.best_cost.violation > 0.0F);
+                TEST_ASSERT_TRUE(aisle_swarm_best_cost(&swarm).violation > 0.0F);
                 continue;
             }
             TEST_ASSERT_EQUAL_MEMORY(&leg[0], &points[0], sizeof leg[0]);
@@ -151,7 +151,7 @@ static void test_a_seed_that_violates_the_margin_is_led_out_of_it(void) {
     for (options.seed = 1; options.seed <= 20; options.seed++) {
         TEST_ASSERT_EQUAL(AISLE_OK, run(through, 2, 5000));
         TEST_ASSERT_TRUE(swarm.seed_cost.violation > 0.0F);
-        hits += swarm.pso.best_cost.violation <= 0.0F;
+        hits += aisle_swarm_best_cost(&swarm).violation <= 0.0F;
     }
     TEST_ASSERT_EQUAL_INT(20, hits);
 }
@@ -191,7 +191,7 @@ static void test_curvature_above_the_vehicles_is_a_violation(void) {
     aisle_vec2 sharp[] = {{1.0, 1.0}, {3.0, 6.5}, {8.5, 6.0}};
     TEST_ASSERT_EQUAL(AISLE_OK, run(sharp, 3, 5000));
     TEST_ASSERT_TRUE(swarm.seed_cost.violation > 0.0F);
-    TEST_ASSERT_FALSE(swarm.pso.best_cost.violation > 0.0F);
+    TEST_ASSERT_FALSE(aisle_swarm_best_cost(&swarm).violation > 0.0F);
     sample_best();
     for (uint32_t i = 0; i < swarm.samples; i++) {
         TEST_ASSERT_TRUE(fabs(aisle_spline_curvature(&samples[i])) <= 0.5 + 1e-6);
@@ -215,7 +215,7 @@ static void test_legs_too_short_or_with_too_many_corners_are_left_alone(void) {
 static void test_vias_lie_within_their_reach_of_the_seed_spread_by_length(void) {
     aisle_vec2 bent[] = {{1.0, 4.2}, {1.0, 6.5}, {9.0, 6.5}, {9.0, 1.0}};
     TEST_ASSERT_EQUAL(AISLE_OK, run(bent, 4, 5000));
-    TEST_ASSERT_TRUE(swarm.vias >= 6 && swarm.vias <= 9);
+    TEST_ASSERT_TRUE(swarm.vias >= 8 && swarm.vias <= 12);
     aisle_vec2 points[AISLE_SWARM_VIAS + 2U];
     uint32_t n = aisle_swarm_best(&swarm, points);
     for (uint32_t i = 1; i + 1U < n; i++) {
@@ -225,13 +225,13 @@ static void test_vias_lie_within_their_reach_of_the_seed_spread_by_length(void) 
         }
         TEST_ASSERT_TRUE(least <= sqrt(2.0) * AISLE_SWARM_REACH + 1e-6);
         double apart = aisle_vec2_distance(swarm.base[i - 1U], i + 2U < n ? swarm.base[i] : bent[3]);
-        TEST_ASSERT_TRUE(apart > 1.0 && apart < 2.8);
+        TEST_ASSERT_TRUE(apart > 0.5 && apart < 2.2);
     }
 }
 
 static void test_the_number_of_samples_is_the_wished_one_or_follows_the_length(void) {
     static const int16_t wished[] = {0, 1, 16, 100, 512, 32767};
-    static const uint32_t taken[] = {55, 16, 16, 100, 512, 512};
+    static const uint32_t taken[] = {34, 16, 16, 100, 512, 512};
     for (int i = 0; i < 6; i++) {
         options.num_samples = wished[i];
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_swarm_start(&swarm, &space, &objective, &options, straight, 2));
@@ -239,17 +239,21 @@ static void test_the_number_of_samples_is_the_wished_one_or_follows_the_length(v
     }
 }
 
+static uint32_t evals(void) {
+    return swarm.pso.evals + swarm.polish_evals;
+}
+
 static void test_units_are_a_quarter_of_the_samples_and_one_each_exact_gap(void) {
     hall_begin(10.0, 8.0); // all open: nothing is in doubt
     open_hall();
     options.num_samples = 200;
     TEST_ASSERT_EQUAL(AISLE_OK, run(straight, 2, 5000));
-    TEST_ASSERT_TRUE(spent >= swarm.pso.evals * 50U);
-    TEST_ASSERT_TRUE(spent <= swarm.pso.evals * 52U);
-    uint32_t open = spent / swarm.pso.evals;
+    TEST_ASSERT_TRUE(spent >= evals() * 50U);
+    TEST_ASSERT_TRUE(spent <= evals() * 52U);
+    uint32_t open = spent / evals();
     pillar_hall();
     TEST_ASSERT_EQUAL(AISLE_OK, run(straight, 2, 5000));
-    TEST_ASSERT_TRUE(spent / swarm.pso.evals >= open);
+    TEST_ASSERT_TRUE(spent / evals() >= open);
 }
 
 int main(void) {
