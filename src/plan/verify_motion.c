@@ -163,9 +163,9 @@ static bool is_apart_across_edges(const sweep *s, const aisle_vec2 *v, uint32_t 
 // points, across the edges of either. For a disc these are all the axes there are.
 static bool is_apart(const sweep *s, const aisle_vec2 *v, uint32_t n) {
     aisle_vec2 way = aisle_vec2_sub(s->b[0], s->a[0]);
-    return is_apart_along(s, v, n, aisle_vec2_of(-way.y, way.x)) || is_apart_along(s, v, n, nearest_way(s, v, n)) ||
-           is_apart_across_edges(s, v, n, v, n) || is_apart_across_edges(s, v, n, s->a, s->n) ||
-           is_apart_across_edges(s, v, n, s->b, s->n);
+    return is_apart_along(s, v, n, aisle_vec2_of(-way.y, way.x)) || is_apart_across_edges(s, v, n, s->a, s->n) ||
+           is_apart_across_edges(s, v, n, s->b, s->n) || is_apart_along(s, v, n, nearest_way(s, v, n)) ||
+           is_apart_across_edges(s, v, n, v, n);
 }
 
 static bool touches(aisle_verify *self, const sweep *s, const aisle_vec2 *v, uint32_t n) {
