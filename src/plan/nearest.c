@@ -47,6 +47,15 @@ static double body_gap(aisle_nearest *self, aisle_vec2 p, double cap) {
     return aisle_layout_gap(space->layout, &disc, cap, NULL);
 }
 
+// Gap of the disc that the body holds, at most cap: not less than the body's, and below 0 where that has no more to tell
+// than contact.
+static double middle_gap(aisle_nearest *self, aisle_vec2 p, double cap) {
+    aisle_vec2 middle = aisle_vec2_add(p, self->middle);
+    self->units++;
+    return aisle_layout_gap(self->space->layout, &(aisle_convex){&middle, 1U, 0.0}, cap + self->middle_radius, NULL) -
+           self->middle_radius;
+}
+
 static double away(const aisle_nearest *self, aisle_vec2 p) {
     return aisle_vec2_distance(p, aisle_vec2_of(self->stop.x, self->stop.y));
 }
@@ -91,6 +100,9 @@ static void judge(aisle_nearest *self, const aisle_nearest_square *s) {
         return;
     }
     double reach = DIAGONAL * s->half;
+    if (middle_gap(self, s->centre, self->need + reach) + reach < self->need) {
+        return;
+    }
     double gap = body_gap(self, s->centre, self->need + 2.0 * reach);
     if (gap + reach < self->need) {
         return;

@@ -11,7 +11,8 @@
 #define STRAY_STEP 1e-3                   // m, of piece_clearance: from straight ways
 #define STRAY_STEP_FREE 1e-4              // m, of piece_free
 #define OVERREACH_STEP 4e-3               // m, and of the hull beyond the sweep of a body that turns
-#define ROUGH 0.0625                      // of a gap that no objective cares about, what may be told too little
+#define ROUGH 0.0625                      // share of a gap that may be told too little where nothing hangs on it
+#define ROUGH_BELOW 0.025                 // m, the same below the creep clearance
 #define PARTS_DEPTH_MAX 13U               // halvings of a piece, at most 4096 parts
 #define HALF_DIAGONAL 0.70710678118654752 // of a square of side 1
 
@@ -323,6 +324,7 @@ typedef struct piece {
     double beyond; // m, what the hull of the body at both ends reaches beyond the sweep, likewise
     double least;  // m, no smaller gap is known to lie on it
     double most;   // m, the least gap of a placement looked at: the answer is not above it
+    bool rough;    // which side of the creep clearance it is on matters, not where
 } piece;
 
 static aisle_pose2 pose_at(const piece *p, double f) {
@@ -376,12 +378,16 @@ static void place_at(const aisle_space *self, piece *p, double f, uint32_t *unit
     *units += 1U;
 }
 
-// Is there nothing more to be learnt from a part of this size and bound? From the creep clearance on no objective asks
-// for more than a rough number.
+// No objective asks for more than a rough number from the creep clearance on, and but for SAFEST none below it.
+static bool is_rough_enough(const piece *p, double gap, double creep) {
+    return (gap >= creep && gap >= (1.0 - ROUGH) * p->most) ||
+           (p->rough && p->most < creep && gap >= p->most - ROUGH_BELOW);
+}
+
+// Is there nothing more to be learnt from a part of this size and bound?
 static bool is_settled(const piece *p, double gap, double size, double creep) {
     const double spare = STRAY_STEP + (p->beyond > 0.0 ? OVERREACH_STEP : 0.0);
-    return gap >= p->least || gap >= p->most - spare || (gap >= creep && gap >= (1.0 - ROUGH) * p->most) ||
-           is_fine(p, size, STRAY_STEP);
+    return gap >= p->least || gap >= p->most - spare || is_rough_enough(p, gap, creep) || is_fine(p, size, STRAY_STEP);
 }
 
 // Branch and bound, halves in order: a part whose lower bound is not below what is known already, or near enough to the
@@ -415,8 +421,9 @@ static double least_over_parts(const aisle_space *self, piece *p, uint32_t *unit
 }
 
 double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
-                                   const aisle_waypoint_msg *to, uint32_t *units) {
+                                   const aisle_waypoint_msg *to, bool rough, uint32_t *units) {
     piece p = piece_between(self, from, to, AISLE_CLEARANCE_CAP);
+    p.rough = rough;
     *units += 1U;
     return is_known_clear(self, &p, AISLE_CLEARANCE_CAP) ? AISLE_CLEARANCE_CAP : least_over_parts(self, &p, units);
 }

@@ -91,11 +91,11 @@ double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
 // Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at
 // most 2 mm below the truth for discs and straight pieces, 6 mm where a polygon turns (the hull of two placements
-// reaches beyond the sweep by up to half the turn times the lever), a sixteenth of it where that is creep_clearance or
-// more. The piece is halved only where the bound of a part
-// may lower the answer. O(parts * obstacles near), a unit for each exact gap.
+// reaches beyond the sweep by up to half the turn times the lever). Where nothing hangs on it, it may be told too
+// little by more: by a sixteenth from creep_clearance on, by 25 mm where `rough` and surely below that. The piece is
+// halved only where the bound of a part may lower the answer. O(parts * obstacles near), a unit for each exact gap.
 double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint_msg *from,
-                                   const aisle_waypoint_msg *to, uint32_t *units);
+                                   const aisle_waypoint_msg *to, bool rough, uint32_t *units);
 
 // Is that gap `need` (m, > 0) or more? "Yes" is sure; "no" may be wrong within 0.2 mm of need for discs and straight
 // pieces, 5 mm where a polygon turns. Ends with the first placement that is too near. Units as above.

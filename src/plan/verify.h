@@ -19,7 +19,8 @@
 // If that
 // hull is free the interval is proved; else it is halved; below 1 mm of travel of every body point it is a collision.
 // Straight pieces without turn have d = 0: one exact test. Intervals above 2 m are halved unseen so that boxes stay
-// small.
+// small, and bent ones above what was proved last, twice as much every few proofs, since they would mostly be looked at
+// in vain.
 // So a path is refused only if the footprint comes closer than margin + 2e-6 m, or, where it turns, margin + 0.6 mm:
 // a hull
 // over 1 mm of travel reaches at most 0.5 mm beyond the nearer of its ends.
@@ -118,6 +119,8 @@ typedef struct aisle_verify_motion { // intervals of the piece in hand; verify_m
     double hi[AISLE_VERIFY_DEPTH];   // where those not yet proved end, the next on top
     uint32_t depth;                  // entries in hi
     double turn;                     // way round in hand
+    double limit;                    // m of travel: longer bent intervals are halved unseen; 0: none yet
+    uint32_t proved;                 // bent intervals since the limit was set
     double margin, growth;           // m: always kept; to be proved on this piece (>= margin)
 } aisle_verify_motion;
 

@@ -5,6 +5,7 @@
 
 #define TRAVEL_MIN 1e-3  // m of every body point, below which no interval is halved
 #define TRAVEL_FINE 0.02 // m, above which a bent interval is not worth libccd
+#define PROOFS_MIN 4U    // of bent intervals, before longer ones are tried
 #define LENGTH_MAX 2.0   // m of an interval looked at
 #define APART_SPARE 1e-9 // m, and axes shorter than 1e-150 part nothing since their squares are 0
 
@@ -163,9 +164,9 @@ static bool is_apart_across_edges(const sweep *s, const aisle_vec2 *v, uint32_t 
 // points, across the edges of either. For a disc these are all the axes there are.
 static bool is_apart(const sweep *s, const aisle_vec2 *v, uint32_t n) {
     aisle_vec2 way = aisle_vec2_sub(s->b[0], s->a[0]);
-    return is_apart_along(s, v, n, aisle_vec2_of(-way.y, way.x)) || is_apart_along(s, v, n, nearest_way(s, v, n)) ||
-           is_apart_across_edges(s, v, n, v, n) || is_apart_across_edges(s, v, n, s->a, s->n) ||
-           is_apart_across_edges(s, v, n, s->b, s->n);
+    return is_apart_along(s, v, n, aisle_vec2_of(-way.y, way.x)) || is_apart_across_edges(s, v, n, s->a, s->n) ||
+           is_apart_across_edges(s, v, n, s->b, s->n) || is_apart_along(s, v, n, nearest_way(s, v, n)) ||
+           is_apart_across_edges(s, v, n, v, n);
 }
 
 static bool touches(aisle_verify *self, const sweep *s, const aisle_vec2 *v, uint32_t n) {
@@ -377,6 +378,17 @@ static aisle_status blame(aisle_verify *self, double lo, double hi, int32_t id) 
     return AISLE_ERR_DATA;
 }
 
+// What a look at a bent interval taught of how long the next ones may be. Any limit proves the same.
+static void learn(aisle_verify_motion *motion, double travel, bool was_proved) {
+    if (!was_proved) {
+        motion->limit = aisle_max(0.75 * travel, TRAVEL_FINE);
+        motion->proved = 0;
+    } else if (++motion->proved == PROOFS_MIN) {
+        motion->limit *= 2.0;
+        motion->proved = 0;
+    }
+}
+
 aisle_status aisle_verify_motion_step(aisle_verify *self) {
     aisle_verify_motion *motion = &self->motion;
     AISLE_ASSERT(motion->depth > 0);
@@ -386,13 +398,18 @@ aisle_status aisle_verify_motion_step(aisle_verify *self) {
     int32_t id = 0;
     sweep s;
     self->intervals++;
-    if (length > LENGTH_MAX) {
+    bool bent = sagitta(self, hi - lo) > 0.0;
+    if (length > LENGTH_MAX || (bent && motion->limit > 0.0 && travel > motion->limit)) {
         halve(motion, hi);
         return AISLE_BUSY;
     }
     sweep_over(self, lo, hi, motion->growth, &s);
-    s.is_coarse = travel > TRAVEL_FINE && sagitta(self, hi - lo) > 0.0;
-    if (is_free(self, &s, &id)) {
+    s.is_coarse = travel > TRAVEL_FINE && bent;
+    bool is_clear = is_free(self, &s, &id);
+    if (bent) {
+        learn(motion, travel, is_clear);
+    }
+    if (is_clear) {
         return advance(self);
     }
     if (travel < TRAVEL_MIN) {

@@ -4,13 +4,15 @@
 #include <float.h>
 
 #define PRUNE_SPARE 1e-12 // m; boxes and shapes round differently, and equal gaps must all be seen
+#define SIDE_SPARE 1e-9   // m; more than distances from a line round at coordinates within AISLE_SHAPE_COORD_MAX
 
 typedef struct search {
     const aisle_layout *layout;
     const aisle_convex *shape;
-    aisle_aabb box; // of the shape
-    double best;    // m; no obstacle further than this is of interest
-    int32_t id;     // of the nearest so far; 0: none
+    aisle_aabb box;   // of the shape
+    aisle_vec2 aside; // unit normal of a shape that is a line, else 0
+    double best;      // m; no obstacle further than this is of interest
+    int32_t id;       // of the nearest so far; 0: none
 } search;
 
 static void consider(search *s, double gap, int32_t id) {
@@ -22,6 +24,29 @@ static void consider(search *s, double gap, int32_t id) {
 
 static bool is_too_far(const search *s, aisle_aabb box) {
     return aisle_aabb_gap(s->box, box) > s->best + PRUNE_SPARE;
+}
+
+static aisle_vec2 normal_of(const aisle_convex *shape) {
+    if (shape->n != 2U) {
+        return aisle_vec2_of(0.0, 0.0);
+    }
+    const aisle_vec2 way = aisle_vec2_sub(shape->v[1], shape->v[0]);
+    const double length = aisle_vec2_length(way);
+    return length > 0.0 ? aisle_vec2_of(-way.y / length, way.x / length) : aisle_vec2_of(0.0, 0.0);
+}
+
+// Do all of v lie too far on one side of the line the shape is? Boxes of oblique lines tell little.
+static bool is_beside(const search *s, const aisle_vec2 *v, uint32_t n) {
+    double lo = DBL_MAX, hi = -DBL_MAX;
+    if (s->shape->n != 2U) {
+        return false;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        const double at = aisle_vec2_dot(aisle_vec2_sub(v[i], s->shape->v[0]), s->aside);
+        lo = aisle_min(lo, at);
+        hi = aisle_max(hi, at);
+    }
+    return aisle_max(lo, -hi) > s->best + s->shape->radius + SIDE_SPARE;
 }
 
 static bool is_finite(const aisle_convex *shape) {
@@ -40,6 +65,15 @@ static void search_bounds(search *s) {
     consider(s, gap, AISLE_LAYOUT_ID_BOUNDS);
 }
 
+// Something lies as near to a point of the shape as the distance field says; which, the search will tell.
+static void lower_by_field(search *s, aisle_vec2 p) {
+    const double upper = aisle_max(aisle_grid_gap_upper(&s->layout->grid, p) - s->shape->radius, 0.0);
+    if (upper < s->best) {
+        s->best = upper;
+        s->id = 0;
+    }
+}
+
 // Lowers what is of interest by what the distance field knows of one point of the shape. False: nothing is near.
 static bool search_field(search *s) {
     const aisle_convex *shape = s->shape;
@@ -54,10 +88,11 @@ static bool search_field(search *s) {
     if (aisle_grid_gap_lower(&s->layout->grid, middle) - reach - shape->radius > s->best) {
         return false;
     }
-    const double upper = aisle_grid_gap_upper(&s->layout->grid, middle);
-    if (upper < s->best) { // something is that near; which, the search will say
-        s->best = upper;
-        s->id = 0;
+    lower_by_field(s, middle);
+    const bool is_wide = s->best > 4.0 * s->layout->grid.lattice.res; // a smaller bound saves rows of scanned cells
+    if (is_wide && shape->n == 2U && aisle_layout_has_scan(s->layout)) {
+        lower_by_field(s, shape->v[0]);
+        lower_by_field(s, shape->v[1]);
     }
     return true;
 }
@@ -68,7 +103,9 @@ static void search_zones(search *s) {
     while (aisle_layout_walk_next(&walk, &zone)) {
         if (aisle_zone_is_obstacle(zone) && !is_too_far(s, zone->box)) {
             const aisle_convex shape = aisle_layout_zone_shape(s->layout, zone);
-            consider(s, aisle_convex_gap(s->shape, &shape), zone->id);
+            if (!is_beside(s, shape.v, shape.n)) {
+                consider(s, aisle_convex_gap(s->shape, &shape), zone->id);
+            }
         }
     }
 }
@@ -97,7 +134,7 @@ static bool search_row(search *s, uint32_t iy) {
         const double x0 = l->x0 + (double)ix * l->res;
         const double x1 = l->x0 + (double)end * l->res;
         const aisle_vec2 corners[4] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-        if (!is_too_far(s, (aisle_aabb){corners[0], corners[2]})) {
+        if (!is_too_far(s, (aisle_aabb){corners[0], corners[2]}) && !is_beside(s, corners, 4)) {
             consider(s, aisle_convex_gap(s->shape, &(aisle_convex){corners, 4, 0.0}), AISLE_LAYOUT_ID_SCAN);
         }
     }
@@ -116,7 +153,8 @@ static void search_scan(search *s) {
 
 double aisle_layout_gap(const aisle_layout *self, const aisle_convex *shape, double cap, int32_t *id) {
     AISLE_ASSERT(aisle_layout_is_in_force(self) && cap >= 0.0);
-    search s = {.layout = self, .shape = shape, .box = aisle_convex_aabb(shape), .best = cap};
+    search s = {
+        .layout = self, .shape = shape, .box = aisle_convex_aabb(shape), .aside = normal_of(shape), .best = cap};
     search_bounds(&s);
     const bool is_clear = s.id != 0 && s.best <= 0.0;
     if (!is_clear && search_field(&s)) {

@@ -464,7 +464,7 @@ static void test_a_small_budget_is_told_and_never_overdrawn_by_more_than_a_piece
 }
 
 static void test_the_configured_budget_holds_where_a_request_names_none(void) {
-    door_config.work_units = 500;
+    door_config.work_units = 50;
     door_open(0);
     take_hall();
     aisle_query_msg query = door_query(1, 2.0, 4.0, 10.0, 4.0);

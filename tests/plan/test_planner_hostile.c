@@ -330,7 +330,7 @@ static void test_a_stop_on_an_obstacles_boundary_or_the_bounds_is_occupied(void)
         for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
             ask_for_path(1.0, 1.0, at[i].x, at[i].y);
             expect_cause(AISLE_STATUS_GOAL_OCCUPIED, at[i].id);
-            TEST_ASSERT_TRUE(door_reply.cause_value > 0.0F || door_reply.num_waypoints == 1); // 0: no place is told
+            TEST_ASSERT_TRUE(door_reply.cause_value > 0.299F); // how far to move
             ask_for_path(at[i].x, at[i].y, 1.0, 1.0);
             expect_cause(AISLE_STATUS_START_OCCUPIED, at[i].id);
         }

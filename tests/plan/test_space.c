@@ -183,12 +183,16 @@ static void test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_ev
         for (int k = 0; k < 60; k++) {
             aisle_waypoint_msg a, b;
             random_piece(&rng, k % 2 == 0, &a, &b);
-            double told = aisle_space_piece_clearance(&space, &a, &b, &units);
+            bool rough = k % 4 >= 2;
+            double told = aisle_space_piece_clearance(&space, &a, &b, rough, &units);
             double truth = fmin(sampled_piece_gap(&a, &b), AISLE_CLEARANCE_CAP);
             TEST_ASSERT_TRUE(told <= truth + 1e-6);
             double spare = k % 2 == 0 ? 2e-3 : 6e-3;
-            TEST_ASSERT_TRUE(told >= truth - spare ||
-                             (told >= hall_vehicle.creep_clearance && told >= truth * 15.0 / 16.0 - spare));
+            double creep = hall_vehicle.creep_clearance;
+            spare = rough && truth < creep ? 25e-3 + 1e-3 : spare; // the truth is sampled
+            TEST_ASSERT_TRUE(told >= truth - spare || (told >= creep && told >= truth * 15.0 / 16.0 - spare));
+            TEST_ASSERT_TRUE(told < creep || truth >= creep - 1e-6);
+            TEST_ASSERT_TRUE(told >= creep || truth < creep + 6e-3);
         }
     }
 }
