@@ -34,11 +34,11 @@ static void test_shortest_costs_one_everywhere(void) {
 }
 
 static void test_safest_falls_linearly_to_one_at_the_creep_clearance(void) {
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 9.0, density(AISLE_OPTIONS_SAFEST, 0.0, 0.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.0, density(AISLE_OPTIONS_SAFEST, 0.25, 0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 16.0, density(AISLE_OPTIONS_SAFEST, 0.0, 0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 8.5, density(AISLE_OPTIONS_SAFEST, 0.25, 0.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, density(AISLE_OPTIONS_SAFEST, 0.5, 0.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, density(AISLE_OPTIONS_SAFEST, 7.0, 0.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 9.0, density(AISLE_OPTIONS_SAFEST, -1.0, 0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 16.0, density(AISLE_OPTIONS_SAFEST, -1.0, 0.0));
     TEST_ASSERT_FALSE(aisle_objective_is_length(&objective));
 }
 
