@@ -84,6 +84,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_swarm(self, units);
     case AISLE_ROUTE_WHY:
         return aisle_route_step_why(self, units);
+    case AISLE_ROUTE_OPENING:
+        return aisle_route_step_opening(self, units);
     default:
         return AISLE_OK;
     }

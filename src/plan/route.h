@@ -20,6 +20,7 @@
 #include "plan/compose.h"
 #include "plan/leg.h"
 #include "plan/nearest.h"
+#include "plan/opening.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
 #include "plan/taut.h"
@@ -60,6 +61,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_VERIFY,
     AISLE_ROUTE_SWARM,
     AISLE_ROUTE_WHY,
+    AISLE_ROUTE_OPENING,
     AISLE_ROUTE_END
 } aisle_route_stage;
 
@@ -76,6 +78,7 @@ typedef struct aisle_route {
     aisle_verify verify;
     aisle_why why;
     aisle_nearest nearest;
+    aisle_opening opening;
     aisle_vec2 *points; // [AISLE_ROUTE_POINTS]
     uint32_t point_count;
     aisle_leg *legs;           // [AISLE_GOAL_LIST_MAX_GOALS]

@@ -1,6 +1,6 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT. route_why.c: WHY.
+// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT. route_why.c: WHY, OPENING.
 // route_proof.c: BUILD, VERIFY, SWARM.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
@@ -60,6 +60,8 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 // Asks why there is no seed for the leg under way; stride: cells, of the searches for width.
 void aisle_route_begin_why(aisle_route *self, uint32_t stride);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
+// OPENING: what would have to go; the cause is told already.
+aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units);
 
 // route_proof.c
 void aisle_route_begin_build(aisle_route *self, aisle_proof *trial);

@@ -99,8 +99,8 @@ static double point_gap(const aisle_space *self, aisle_vec2 p, double cap) {
 }
 
 // Branch and bound over the squares of a cell, depth first.
-static bool holds_exactly(const aisle_space *self, aisle_vec2 centre, double reach, uint32_t depth_max,
-                          uint32_t *units) {
+bool aisle_space_square_holds(const aisle_space *self, const aisle_layout_without *without, aisle_vec2 centre,
+                              double reach, uint32_t depth_max, uint32_t *units) {
     aisle_vec2 open[3U * AISLE_SPACE_DEPTH_MAX + 1U]; // centres of squares in doubt; their depths beside them
     uint32_t depth[3U * AISLE_SPACE_DEPTH_MAX + 1U];
     uint32_t count = 1;
@@ -111,7 +111,9 @@ static bool holds_exactly(const aisle_space *self, aisle_vec2 centre, double rea
         aisle_vec2 c = open[count];
         uint32_t d = depth[count];
         double half = 0.5 * self->grid->lattice.res / (double)(1U << d);
-        double best = point_gap(self, c, reach) + 2.0 * half * HALF_DIAGONAL; // of any point of the square
+        aisle_convex point = {&c, 1U, 0.0};
+        double gap = aisle_layout_gap_without(self->layout, without, &point, reach, NULL);
+        double best = gap + 2.0 * half * HALF_DIAGONAL; // of any point of the square
         *units += 1U;
         if (best < reach) {
             continue;
@@ -143,7 +145,7 @@ bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint
     if ((self->cell_free[cell / 64U] & bit) != 0U) {
         return true;
     }
-    if (!holds_exactly(self, aisle_lattice_centre(&self->grid->lattice, cell), reach, depth, units)) {
+    if (!aisle_space_square_holds(self, NULL, aisle_lattice_centre(&self->grid->lattice, cell), reach, depth, units)) {
         return false;
     }
     self->cell_free[cell / 64U] |= bit;

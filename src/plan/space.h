@@ -68,6 +68,10 @@ bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *unit
 // yes is
 // remembered until forget(), so reach and depth stay the same meanwhile.
 bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units);
+
+// The same of a cell's square about `centre`, the exact part alone, with some polygons left out (NULL: none).
+bool aisle_space_square_holds(const aisle_space *self, const aisle_layout_without *without, aisle_vec2 centre,
+                              double reach, uint32_t depth, uint32_t *units);
 void aisle_space_forget(aisle_space *self); // O(cells / 64)
 
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.

@@ -163,6 +163,7 @@ static aisle_status next_search(aisle_why *self, bool found) {
     case AISLE_WHY_ROUGH:
         if (found) {
             self->stage = AISLE_WHY_PROVE;
+            self->depth = AISLE_SPACE_DEPTH_MAX;
             aisle_seed_start_proof(self->seed, self->space, self->start, self->goal, self->reach,
                                    AISLE_SPACE_DEPTH_MAX);
             return AISLE_BUSY;

@@ -35,6 +35,7 @@ typedef struct aisle_why {
     uint32_t stride; // cells between neighbours of the searches for width
     uint32_t lo, hi; // field values: lo connects, hi does not
     bool proved;     // there is no way at this margin
+    uint32_t depth;  // halvings of a cell that the proof took
     bool connected;  // for something narrower there is
     double width;    // m, of the narrowest place of the widest way, if connected
     aisle_vec2 place;
