@@ -15,7 +15,7 @@
 #include "world/layout.h"
 
 #define AISLE_SPACE_SLACK 5e-4 // m
-#define AISLE_SPACE_DEPTH_MAX 3U
+#define AISLE_SPACE_DEPTH_MAX 5U
 #define AISLE_SPACE_PIECE 0.5   // m, longest sweep given to one exact test
 #define AISLE_CLEARANCE_CAP 2.0 // m, a larger clearance is told as this
 
