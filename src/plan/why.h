@@ -20,7 +20,7 @@
 
 typedef enum aisle_why_stage {
     AISLE_WHY_ROUGH,  // does the optimistic grid connect at the margin, to a cell?
-    AISLE_WHY_PROVE,  // and to an eighth of a cell?
+    AISLE_WHY_PROVE,  // and to 2^-AISLE_SPACE_DEPTH_MAX of a cell?
     AISLE_WHY_ANY,    // does anything connect?
     AISLE_WHY_BISECT, // how wide at most?
     AISLE_WHY_WIDEST  // the widest way itself
