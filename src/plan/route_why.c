@@ -13,9 +13,9 @@ static aisle_status refuse_no_path(aisle_route *self) {
 
 static aisle_status refuse_too_narrow(aisle_route *self) {
     const aisle_why *why = &self->why;
-    (void)aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->id[0], why->width, why->place);
-    for (uint32_t i = 0; i < why->sides; i++) {
-        aisle_route_tell(self, why->side[i], why->id[i], 0);
+    (void)aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->gap.id[0], why->gap.width, why->gap.place);
+    for (uint32_t i = 0; i < why->gap.sides; i++) {
+        aisle_route_tell(self, why->gap.side[i], why->gap.id[i], 0);
     }
     return AISLE_OK;
 }
@@ -23,7 +23,7 @@ static aisle_status refuse_too_narrow(aisle_route *self) {
 // There is no way, and that is proved: which obstacles would have to go?
 static aisle_status begin_opening(aisle_route *self) {
     const aisle_why *why = &self->why;
-    bool narrow = why->connected && why->width < 2.0 * why->reach;
+    bool narrow = why->connected && why->gap.width < 2.0 * why->reach;
     (void)(narrow ? refuse_too_narrow(self) : refuse_no_path(self));
     uint32_t left = self->spent < self->budget ? self->budget - self->spent : 0U;
     aisle_opening_start(&self->opening, &self->seed, &self->space, why->start, why->goal, why->depth,
@@ -43,7 +43,7 @@ static aisle_status end_why(aisle_route *self) {
         const aisle_goal_msg *goal = &self->request.goals[self->leg];
         return aisle_route_refuse_at(self, cause, goal->id, 0.0, why->goal);
     }
-    return aisle_route_refuse_at(self, cause, why->id[0], why->width, why->place);
+    return aisle_route_refuse_at(self, cause, why->gap.id[0], why->gap.width, why->gap.place);
 }
 
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
