@@ -163,7 +163,7 @@ static void visit(aisle_opening *self, uint32_t cell) {
         return;
     }
     uint16_t label = labels(self)[cell];
-    if (!self->anew && label == BY_GOAL) { // the pair's first one goes on: it wants all that it borders
+    if (!self->anew && label == BY_GOAL) {
         self->connected = true;
         return;
     }
@@ -258,8 +258,7 @@ static bool seed_row(aisle_opening *self, uint32_t i) {
 
 // A little of the flood. False: it has ended.
 static bool go_on(aisle_opening *self) {
-    bool goes_on = self->stage == AISLE_OPENING_FIRST;
-    if (self->overflow || (self->connected && !goes_on)) {
+    if (self->overflow || self->connected) {
         return false;
     }
     if (seed_row(self, 0) || seed_row(self, 1)) {

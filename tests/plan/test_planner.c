@@ -415,6 +415,20 @@ static void test_a_start_or_goal_outside_is_told(void) {
     place_is(10.0, 8.5);
 }
 
+static void test_who_moves_as_far_as_told_has_moved_enough(void) {
+    take_hall();
+    for (int i = 0; i < 40; i++) {
+        aisle_query_msg query = door_query(1, 4.6 + 0.013 * i, 4.0 + 0.007 * i, 10.0, 4.0);
+        TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_START_OCCUPIED, cause_of(&query));
+        aisle_vec2 to = {door_reply.waypoints[1].x - query.start.x, door_reply.waypoints[1].y - query.start.y};
+        double told = (double)door_reply.cause_value;
+        TEST_ASSERT_TRUE(told >= hypot(to.x, to.y));
+        told = ceil(told * 1e3) / 1e3 / hypot(to.x, to.y);
+        query = door_query(2, query.start.x + told * to.x, query.start.y + told * to.y, 10.0, 4.0);
+        TEST_ASSERT_NOT_EQUAL_INT16(AISLE_STATUS_START_OCCUPIED, door_ask(&query)->cause);
+    }
+}
+
 static void test_a_goal_walled_in_is_proved_to_have_no_path(void) {
     hall_begin(12.0, 8.0);
     hall_add(5.0, 0.0, 5.2, 8.0);
@@ -1347,6 +1361,7 @@ int main(void) {
     RUN_TEST(test_no_layout_no_vehicle_and_another_map_are_told);
     RUN_TEST(test_an_occupied_start_or_goal_is_told_with_what_is_in_the_way_and_where);
     RUN_TEST(test_a_start_or_goal_outside_is_told);
+    RUN_TEST(test_who_moves_as_far_as_told_has_moved_enough);
     RUN_TEST(test_a_goal_walled_in_is_proved_to_have_no_path);
     RUN_TEST(test_what_is_proved_when_the_budget_ends_is_told);
     RUN_TEST(test_a_door_too_narrow_is_told_with_its_width_and_wall);
