@@ -52,8 +52,8 @@ typedef struct aisle_seed {
     bool roomiest;
     uint32_t *cells; // [AISLE_SEED_CELLS_MAX]
     uint32_t cell_count, at;
-    uint16_t *factor;            // [AISLE_SEED_TABLE] by field value
-    uint32_t open_from;          // WIDTH: least field value of an open cell
+    uint16_t *factor;      // [AISLE_SEED_TABLE] by field value
+    uint32_t open_from;    // WIDTH: least field value of an open cell
     aisle_vec2 (*bars)[2]; // WIDTH, the widest way: segments it must not cross; the caller's
     uint32_t bar_count;
     double proof_reach; // PROOF: m
