@@ -21,7 +21,7 @@ static void measure_middle(aisle_nearest *self) {
     for (uint32_t i = 0; i < body.n; i++) {
         self->middle = aisle_vec2_add(self->middle, aisle_vec2_scale(v[i], 1.0 / body.n));
     }
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (uint32_t i = 0; i < body.n; i++) {
         aisle_vec2 edge[2] = {v[i], v[(i + 1U) % body.n]};
         least = aisle_min(least, aisle_convex_point_gap(&(aisle_convex){edge, 2U, 0.0}, self->middle));

@@ -102,6 +102,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
     case AISLE_ROUTE_DROP:
         return aisle_route_give_way_up(self, AISLE_STATUS_KINEMATIC, 0, 0.0,
                                        aisle_route_place(&self->request.goals[self->leg]));
+    case AISLE_ROUTE_OPENING:
+        return aisle_route_step_opening(self, units);
     default:
         return AISLE_OK;
     }

@@ -5,6 +5,8 @@
 // legs - END. WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm
 // begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
+// The tangent search's proof that there is no way for the disc inside the footprint goes straight to WHY, whose grid is
+// a second opinion: where it sees a doubt the dear attempts are made all the same.
 // Attempts at a seed, until one finds a way: the turning disc, with AISLE_ROUTE_STRIDE between search cells, then with
 // every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
 // try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
@@ -20,6 +22,7 @@
 #include "plan/compose.h"
 #include "plan/leg.h"
 #include "plan/nearest.h"
+#include "plan/opening.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
 #include "plan/tangent.h"
@@ -77,6 +80,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_NEXT, // the way under way is done with
     AISLE_ROUTE_DROP, // or leads nowhere
+    AISLE_ROUTE_OPENING,
     AISLE_ROUTE_END
 } aisle_route_stage;
 
@@ -99,6 +103,7 @@ typedef struct aisle_route {
     aisle_verify verify;
     aisle_why why;
     aisle_nearest nearest;
+    aisle_opening opening;
     aisle_vec2 *points; // [AISLE_ROUTE_POINTS]
     uint32_t point_count;
     aisle_leg *legs;         // [AISLE_GOAL_LIST_MAX_GOALS]
@@ -110,6 +115,7 @@ typedef struct aisle_route {
     int32_t revision;        // of the first path told
     aisle_route_stage stage;
     bool stops;                          // build with a stop in every corner
+    bool no_way;                         // proved for the leg under way, exactly, by the tangent search
     bool is_wide;                        // tight ways (route_tangent.c) failed
     bool announced;                      // AISLE_PARTIAL was told
     uint32_t spent, budget, proof_units; // work units; what the first build and proof took

@@ -33,8 +33,7 @@ static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mo
     return aisle_vehicle_is_disc(self->vehicle) ? attempts[n].for_discs : attempts[n].for_bodies;
 }
 
-// No way was found: the first way of all asks why, others are given up.
-static void end_attempts(aisle_route *self) {
+void aisle_route_end_attempts(aisle_route *self) {
     if (self->way_index == 0U) {
         aisle_route_begin_why(self, coarse_stride(self));
     } else {
@@ -61,7 +60,7 @@ void aisle_route_begin_seed(aisle_route *self, uint32_t n) {
             return;
         }
     }
-    end_attempts(self);
+    aisle_route_end_attempts(self);
 }
 
 static void begin_leg(aisle_route *self) {
@@ -69,6 +68,7 @@ static void begin_leg(aisle_route *self) {
     aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
     aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
     double beeline = aisle_vec2_distance(from, to);
+    self->no_way = false;
     double bound = self->way_index == 0U ? beeline : leg->bound; // the first way's search has raised it
     *leg = (aisle_leg){.first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0, .bound = bound};
     if (beeline < 1e-6) { // there already

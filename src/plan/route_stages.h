@@ -1,6 +1,6 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT. route_why.c: WHY.
+// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT. route_why.c: WHY, OPENING.
 // route_proof.c: BUILD, VERIFY, SWARM.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
@@ -75,6 +75,8 @@ void aisle_route_begin_legs(aisle_route *self);
 void aisle_route_next_leg(aisle_route *self);
 // Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
 void aisle_route_begin_seed(aisle_route *self, uint32_t n);
+// No way was found: the first way of all asks why, others are given up.
+void aisle_route_end_attempts(aisle_route *self);
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units);
 // Pulls the leg's polyline of `count` points taut.
 void aisle_route_begin_taut(aisle_route *self, uint32_t count);
@@ -85,6 +87,8 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 // Asks why there is no seed for the leg under way; stride: cells, of the searches for width.
 void aisle_route_begin_why(aisle_route *self, uint32_t stride);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
+// OPENING: what would have to go; the cause is told already.
+aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units);
 
 // route_proof.c
 aisle_compose_request aisle_route_build_request(aisle_route *self);

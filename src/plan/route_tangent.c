@@ -115,12 +115,14 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     if (st == AISLE_BUSY && left_for_tangent(self) > 0U) {
         return AISLE_BUSY;
     }
-    if (self->tangent_search == BOUND && self->way_index == 0U && st != AISLE_PARTIAL) {
+    bool is_bound = self->tangent_search == BOUND && self->way_index == 0U;
+    if (is_bound && st != AISLE_PARTIAL) {
         self->legs[self->leg].bound = self->tangent.bound;
     }
-    if (st == AISLE_PARTIAL &&
-        !self->legs[self->leg]
-             .is_slit) { // nor is there one for anything wider: the grid is asked as well, and then why
+    if (st == AISLE_PARTIAL && is_bound) {
+        self->no_way = true;
+        aisle_route_end_attempts(self);
+    } else if (st == AISLE_PARTIAL && !self->legs[self->leg].is_slit) { // nor is there one for anything wider
         aisle_route_begin_seed(self, 0);
     } else {
         go_on(self, st == AISLE_OK);

@@ -6,35 +6,95 @@ void aisle_route_begin_why(aisle_route *self, uint32_t stride) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
+static aisle_status refuse_no_path(aisle_route *self) {
+    const aisle_goal_msg *goal = &self->request.goals[self->leg];
+    return aisle_route_refuse_at(self, AISLE_STATUS_NO_PATH, goal->id, 0.0, aisle_route_place(goal));
+}
+
 static aisle_status refuse_too_narrow(aisle_route *self) {
     const aisle_why *why = &self->why;
-    (void)aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->id[0], why->width, why->place);
-    for (uint32_t i = 0; i < why->sides; i++) {
-        aisle_route_tell(self, why->side[i], why->id[i], 0);
+    (void)aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->gap.id[0], why->gap.width, why->gap.place);
+    for (uint32_t i = 0; i < why->gap.sides; i++) {
+        aisle_route_tell(self, why->gap.side[i], why->gap.id[i], 0);
     }
     return AISLE_OK;
+}
+
+// There is no way, and that is proved: which obstacles would have to go?
+static aisle_status begin_opening(aisle_route *self) {
+    const aisle_why *why = &self->why;
+    bool narrow = why->connected && why->gap.width < 2.0 * why->reach;
+    (void)(narrow ? refuse_too_narrow(self) : refuse_no_path(self));
+    uint32_t left = self->spent < self->budget ? self->budget - self->spent : 0U;
+    aisle_opening_start(&self->opening, &self->seed, &self->space, why->start, why->goal, why->depth,
+                        left < AISLE_OPENING_UNITS ? left : AISLE_OPENING_UNITS);
+    self->stage = AISLE_ROUTE_OPENING;
+    return AISLE_BUSY;
+}
+
+static aisle_status end_why(aisle_route *self) {
+    const aisle_why *why = &self->why;
+    if (why->proved) {
+        return begin_opening(self);
+    }
+    if (self->no_way) { // too little is wanting for the grid to see it
+        bool narrow = why->connected && why->gap.width < 2.0 * why->reach;
+        return narrow ? refuse_too_narrow(self) : refuse_no_path(self);
+    }
+    int16_t cause =
+        aisle_vehicle_is_disc(self->vehicle) || !why->connected ? AISLE_STATUS_BUDGET : AISLE_STATUS_KINEMATIC;
+    if (!why->connected) { // by what can be seen on the grid, which is no proof
+        const aisle_goal_msg *goal = &self->request.goals[self->leg];
+        return aisle_route_refuse_at(self, cause, goal->id, 0.0, why->goal);
+    }
+    return aisle_route_refuse_at(self, cause, why->gap.id[0], why->gap.width, why->gap.place);
 }
 
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
     aisle_status st = aisle_why_step(&self->why, units, &self->spent);
     const aisle_why *why = &self->why;
-    if (st == AISLE_PARTIAL && !why->proved && self->legs[self->leg].attempt < AISLE_ROUTE_ATTEMPTS_CHEAP) {
+    if (st == AISLE_PARTIAL && why->proved) {
+        (void)refuse_no_path(self); // told if the budget ends before more is known
+        self->stage = AISLE_ROUTE_WHY;
+        return AISLE_BUSY;
+    }
+    if (st == AISLE_PARTIAL && self->legs[self->leg].attempt < AISLE_ROUTE_ATTEMPTS_CHEAP) {
         aisle_route_begin_seed(self, AISLE_ROUTE_ATTEMPTS_CHEAP);
         return AISLE_BUSY;
     }
     if (st == AISLE_BUSY || st == AISLE_PARTIAL) {
         return AISLE_BUSY;
     }
-    if (st != AISLE_OK) {
-        return aisle_route_refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
+    if (st == AISLE_OK) {
+        return end_why(self);
     }
-    if (!why->connected) {
-        int16_t cause = why->proved ? AISLE_STATUS_NO_PATH : AISLE_STATUS_BUDGET;
-        return aisle_route_refuse_at(self, cause, self->request.goals[self->leg].id, 0.0, why->goal);
+    if (why->proved) { // that much is known
+        self->stage = AISLE_ROUTE_END;
+        return AISLE_OK;
     }
-    if (why->proved) {
-        return refuse_too_narrow(self);
+    return aisle_route_refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
+}
+
+static aisle_vec2 centre_of(const aisle_convex *shape) {
+    aisle_vec2 sum = {0.0, 0.0};
+    for (uint32_t i = 0; i < shape->n; i++) {
+        sum = aisle_vec2_add(sum, aisle_vec2_scale(shape->v[i], 1.0 / shape->n));
     }
-    int16_t cause = aisle_vehicle_is_disc(self->vehicle) ? AISLE_STATUS_BUDGET : AISLE_STATUS_KINEMATIC;
-    return aisle_route_refuse_at(self, cause, why->id[0], why->width, why->place);
+    return sum;
+}
+
+aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units) {
+    const aisle_opening *opening = &self->opening;
+    aisle_status st = aisle_opening_step(&self->opening, units, &self->spent);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    const uint32_t zones[AISLE_LAYOUT_WITHOUT_MAX] = {opening->first, opening->second};
+    for (uint32_t i = 0; st == AISLE_OK && i < opening->without.count; i++) {
+        const aisle_zone *zone = aisle_layout_zone(self->layout, zones[i]);
+        aisle_convex shape = aisle_layout_zone_shape(self->layout, zone);
+        aisle_route_tell(self, centre_of(&shape), zone->id, AISLE_WAYPOINT_GOAL);
+    }
+    self->stage = AISLE_ROUTE_END;
+    return AISLE_OK;
 }

@@ -111,6 +111,17 @@ static uint32_t enter_width(void *ctx, uint32_t from, uint32_t to, uint8_t dir) 
                                                                             : AISLE_ASTAR_BARRED_CELL;
 }
 
+// Cells a bar runs through: no path of neighbours gets past them.
+static bool is_barred(const aisle_seed *self, uint32_t cell) {
+    aisle_vec2 p = aisle_lattice_centre(&self->space->grid->lattice, cell);
+    for (uint32_t i = 0; i < self->bar_count; i++) {
+        if (aisle_segment_gap(self->bars[i][0], self->bars[i][1], p, p) <= 0.75 * step_length(self)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // As enter_width, but dear near the least clearance: the way keeps to the middle wherever there is more room, so that
 // only true narrow places are left on it.
 static uint32_t enter_widest(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
@@ -120,6 +131,9 @@ static uint32_t enter_widest(void *ctx, uint32_t from, uint32_t to, uint8_t dir)
     const aisle_grid *grid = self->space->grid;
     uint32_t field = grid->field[grid_cell(self, to)];
     if (field < self->open_from) {
+        return AISLE_ASTAR_BARRED_CELL;
+    }
+    if (self->bar_count > 0U && is_barred(self, grid_cell(self, to))) {
         return AISLE_ASTAR_BARRED_CELL;
     }
     double spare = (sqrt((double)field) - sqrt((double)self->open_from)) * grid->lattice.res / WIDEST_ROOM;
@@ -432,6 +446,7 @@ static void start_for_refusal(aisle_seed *self, aisle_space *space, aisle_vec2 s
                               aisle_astar_enter_fn enter) {
     self->space = space;
     self->for_refusal = true;
+    self->bar_count = 0;
     self->roomiest = false;
     self->stride = stride;
     self->units = 0;

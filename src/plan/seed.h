@@ -52,8 +52,10 @@ typedef struct aisle_seed {
     bool roomiest;
     uint32_t *cells; // [AISLE_SEED_CELLS_MAX]
     uint32_t cell_count, at;
-    uint16_t *factor;   // [AISLE_SEED_TABLE] by field value
-    uint32_t open_from; // WIDTH: least field value of an open cell
+    uint16_t *factor;      // [AISLE_SEED_TABLE] by field value
+    uint32_t open_from;    // WIDTH: least field value of an open cell
+    aisle_vec2 (*bars)[2]; // WIDTH, the widest way: segments it must not cross; the caller's
+    uint32_t bar_count;
     double proof_reach; // PROOF: m
     uint32_t proof_depth;
     bool for_refusal; // PROOF or WIDTH
@@ -81,7 +83,7 @@ void aisle_seed_start_proof(aisle_seed *self, aisle_space *space, aisle_vec2 sta
                             uint32_t depth);
 void aisle_seed_start_width(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                             uint32_t open_from);
-// The same cells, but the way keeps off the least clearance where it can.
+// The same cells, but the way keeps off the least clearance where it can; bars, if any, are set after this.
 void aisle_seed_start_widest(aisle_seed *self, aisle_space *space, aisle_vec2 start, aisle_vec2 goal, uint32_t stride,
                              uint32_t open_from);
 aisle_status aisle_seed_step_refusal(aisle_seed *self, uint32_t units, uint32_t *spent);

@@ -74,11 +74,11 @@ void aisle_space_forget(aisle_space *self) {
     self->known_end = 0;
 }
 
-static bool is_known_free(const aisle_space *self, uint32_t cell) {
+bool aisle_space_is_noted(const aisle_space *self, uint32_t cell) {
     return (self->cell_free[cell / 64U] >> (cell % 64U) & 1U) != 0U;
 }
 
-static void note_free(aisle_space *self, uint32_t cell) {
+void aisle_space_note(aisle_space *self, uint32_t cell) {
     const uint32_t word = cell / 64U;
     self->cell_free[word] |= 1ULL << (cell % 64U);
     self->known_from = word < self->known_from ? word : self->known_from;
@@ -103,7 +103,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
     if (centre_gap + self->beyond < need) {
         return false;
     }
-    if (is_known_free(self, cell)) {
+    if (aisle_space_is_noted(self, cell)) {
         return true;
     }
     *units += 1U;
@@ -111,7 +111,7 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
     if (!capsule_free(self, centre, centre, need)) {
         return false;
     }
-    note_free(self, cell);
+    aisle_space_note(self, cell);
     return true;
 }
 
@@ -122,8 +122,8 @@ static double point_gap(const aisle_space *self, aisle_vec2 p, double cap) {
 }
 
 // Branch and bound over the squares of a cell, depth first.
-static bool holds_exactly(const aisle_space *self, aisle_vec2 centre, double reach, uint32_t depth_max,
-                          uint32_t *units) {
+bool aisle_space_square_holds(const aisle_space *self, const aisle_layout_without *without, aisle_vec2 centre,
+                              double reach, uint32_t depth_max, uint32_t *units) {
     aisle_vec2 open[3U * AISLE_SPACE_DEPTH_MAX + 1U]; // centres of squares in doubt; their depths beside them
     uint32_t depth[3U * AISLE_SPACE_DEPTH_MAX + 1U];
     uint32_t count = 1;
@@ -134,7 +134,9 @@ static bool holds_exactly(const aisle_space *self, aisle_vec2 centre, double rea
         aisle_vec2 c = open[count];
         uint32_t d = depth[count];
         double half = 0.5 * self->grid->lattice.res / (double)(1U << d);
-        double best = point_gap(self, c, reach) + 2.0 * half * HALF_DIAGONAL; // of any point of the square
+        aisle_convex point = {&c, 1U, 0.0};
+        double gap = aisle_layout_gap_without(self->layout, without, &point, reach, NULL);
+        double best = gap + 2.0 * half * HALF_DIAGONAL; // of any point of the square
         *units += 1U;
         if (best < reach) {
             continue;
@@ -162,13 +164,13 @@ bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint
     if (centre_gap + self->beyond + side * HALF_DIAGONAL < reach) {
         return false;
     }
-    if (is_known_free(self, cell)) {
+    if (aisle_space_is_noted(self, cell)) {
         return true;
     }
-    if (!holds_exactly(self, aisle_lattice_centre(&self->grid->lattice, cell), reach, depth, units)) {
+    if (!aisle_space_square_holds(self, NULL, aisle_lattice_centre(&self->grid->lattice, cell), reach, depth, units)) {
         return false;
     }
-    note_free(self, cell);
+    aisle_space_note(self, cell);
     return true;
 }
 

@@ -15,7 +15,7 @@
 #include "world/layout.h"
 
 #define AISLE_SPACE_SLACK 5e-4 // m
-#define AISLE_SPACE_DEPTH_MAX 3U
+#define AISLE_SPACE_DEPTH_MAX 5U
 #define AISLE_SPACE_PIECE 0.5   // m, longest sweep given to one exact test
 #define AISLE_SPACE_ROOTS 4096U // field values whose square root is tabulated
 #define AISLE_CLEARANCE_CAP 2.0 // m, a larger clearance is told as this
@@ -72,7 +72,15 @@ bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *unit
 // yes is
 // remembered until forget(), so reach and depth stay the same meanwhile.
 bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units);
+
+// The same of a cell's square about `centre`, the exact part alone, with some polygons left out (NULL: none).
+bool aisle_space_square_holds(const aisle_space *self, const aisle_layout_without *without, aisle_vec2 centre,
+                              double reach, uint32_t depth, uint32_t *units);
 void aisle_space_forget(aisle_space *self); // O(words written)
+
+// The bits that the tests above remember by, for others between forget() and forget().
+void aisle_space_note(aisle_space *self, uint32_t cell);
+bool aisle_space_is_noted(const aisle_space *self, uint32_t cell);
 
 // Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.
 bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);

@@ -177,4 +177,13 @@ bool aisle_layout_has_scan(const aisle_layout *self);
 // NULL): that obstacle, a polygon's id or AISLE_LAYOUT_ID_*; 0 if none within cap. Equal gaps: the least id. A shape
 // that is not finite: contact with the bounds. O(zones and scan rows within cap).
 double aisle_layout_gap(const aisle_layout *self, const aisle_convex *shape, double cap, int32_t *id);
+
+// The same as if the polygons named were not there; ids that name none change nothing. NULL in place of them: as above.
+#define AISLE_LAYOUT_WITHOUT_MAX 2U
+typedef struct aisle_layout_without {
+    int32_t id[AISLE_LAYOUT_WITHOUT_MAX];
+    uint32_t count;
+} aisle_layout_without;
+double aisle_layout_gap_without(const aisle_layout *self, const aisle_layout_without *without,
+                                const aisle_convex *shape, double cap, int32_t *id);
 #endif

@@ -115,7 +115,7 @@ static void take_pair(pair *best, aisle_vec2 on_a, aisle_vec2 on_b, aisle_vec2 p
 }
 
 double aisle_piece_gap(const aisle_piece *a, const aisle_piece *b, aisle_vec2 p, aisle_vec2 *on_a, aisle_vec2 *on_b) {
-    pair best = {.gap = INFINITY, .off = INFINITY};
+    pair best = {.gap = (double)INFINITY, .off = (double)INFINITY};
     for (uint32_t i = 0; i < a->n; i++) {
         take_pair(&best, a->v[i], nearest_on_piece(b->v, b->n, a->v[i]), p);
     }

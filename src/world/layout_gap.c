@@ -9,10 +9,11 @@
 typedef struct search {
     const aisle_layout *layout;
     const aisle_convex *shape;
-    aisle_aabb box;   // of the shape
-    aisle_vec2 aside; // unit normal of a shape that is a line, else 0
-    double best;      // m; no obstacle further than this is of interest
-    int32_t id;       // of the nearest so far; 0: none
+    aisle_aabb box;                      // of the shape
+    aisle_vec2 aside;                    // unit normal of a shape that is a line, else 0
+    double best;                         // m; no obstacle further than this is of interest
+    int32_t id;                          // of the nearest so far; 0: none
+    const aisle_layout_without *without; // NULL: all obstacles count
 } search;
 
 static void consider(search *s, double gap, int32_t id) {
@@ -88,6 +89,9 @@ static bool search_field(search *s) {
     if (aisle_grid_gap_lower(&s->layout->grid, middle) - reach - shape->radius > s->best) {
         return false;
     }
+    if (s->without != NULL) { // what is that near may be what does not count
+        return true;
+    }
     lower_by_field(s, middle);
     const bool is_wide = s->best > 4.0 * s->layout->grid.lattice.res; // a smaller bound saves rows of scanned cells
     if (is_wide && shape->n == 2U && aisle_layout_has_scan(s->layout)) {
@@ -97,11 +101,20 @@ static bool search_field(search *s) {
     return true;
 }
 
+static bool counts(const search *s, const aisle_zone *zone) {
+    for (uint32_t i = 0; s->without != NULL && i < s->without->count; i++) {
+        if (s->without->id[i] == zone->id) {
+            return false;
+        }
+    }
+    return aisle_zone_is_obstacle(zone);
+}
+
 static void search_zones(search *s) {
     const aisle_zone *zone;
     aisle_layout_walk walk = aisle_layout_walk_over(s->layout, aisle_aabb_grow(s->box, s->best + PRUNE_SPARE));
     while (aisle_layout_walk_next(&walk, &zone)) {
-        if (aisle_zone_is_obstacle(zone) && !is_too_far(s, zone->box)) {
+        if (counts(s, zone) && !is_too_far(s, zone->box)) {
             const aisle_convex shape = aisle_layout_zone_shape(s->layout, zone);
             if (!is_beside(s, shape.v, shape.n)) {
                 consider(s, aisle_convex_gap(s->shape, &shape), zone->id);
@@ -151,10 +164,15 @@ static void search_scan(search *s) {
     }
 }
 
-double aisle_layout_gap(const aisle_layout *self, const aisle_convex *shape, double cap, int32_t *id) {
+double aisle_layout_gap_without(const aisle_layout *self, const aisle_layout_without *without,
+                                const aisle_convex *shape, double cap, int32_t *id) {
     AISLE_ASSERT(aisle_layout_is_in_force(self) && cap >= 0.0);
-    search s = {
-        .layout = self, .shape = shape, .box = aisle_convex_aabb(shape), .aside = normal_of(shape), .best = cap};
+    search s = {.layout = self,
+                .shape = shape,
+                .box = aisle_convex_aabb(shape),
+                .aside = normal_of(shape),
+                .best = cap,
+                .without = without};
     search_bounds(&s);
     const bool is_clear = s.id != 0 && s.best <= 0.0;
     if (!is_clear && search_field(&s)) {
@@ -167,4 +185,8 @@ double aisle_layout_gap(const aisle_layout *self, const aisle_convex *shape, dou
         *id = s.id;
     }
     return s.best;
+}
+
+double aisle_layout_gap(const aisle_layout *self, const aisle_convex *shape, double cap, int32_t *id) {
+    return aisle_layout_gap_without(self, NULL, shape, cap, id);
 }

@@ -122,6 +122,8 @@ static void test_on_corners_and_in_corners_of_the_hall_it_is_exact(void) {
     TEST_ASSERT_EQUAL(AISLE_OK, run((aisle_pose2){0.0, 0.0, 0.0}, true, 100)); // on the boundary's corner
     TEST_ASSERT_DOUBLE_WITHIN(6e-4, r * sqrt(2.0), nearest.distance);
     check_place((aisle_pose2){0.0, 0.0, 0.0}, true);
+    TEST_ASSERT_EQUAL(AISLE_OK, run((aisle_pose2){0.21, 0.033, 0.0}, true, 100)); // the same place, off its diagonal
+    TEST_ASSERT_DOUBLE_WITHIN(6e-4, hypot(r - 0.21, r - 0.033), nearest.distance);
     TEST_ASSERT_EQUAL(AISLE_OK, run((aisle_pose2){8.0, 5.0, 0.0}, true, 100));
     TEST_ASSERT_DOUBLE_WITHIN(6e-4, r * sqrt(2.0), nearest.distance);
     TEST_ASSERT_EQUAL(AISLE_OK, run((aisle_pose2){4.0, 2.0, 0.0}, true, 100)); // every place of an arc is as near

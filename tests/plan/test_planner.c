@@ -417,6 +417,20 @@ static void test_a_start_or_goal_outside_is_told(void) {
     place_is(10.0, 8.5);
 }
 
+static void test_who_moves_as_far_as_told_has_moved_enough(void) {
+    take_hall();
+    for (int i = 0; i < 40; i++) {
+        aisle_query_msg query = door_query(1, 4.6 + 0.013 * i, 4.0 + 0.007 * i, 10.0, 4.0);
+        TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_START_OCCUPIED, cause_of(&query));
+        aisle_vec2 to = {door_reply.waypoints[1].x - query.start.x, door_reply.waypoints[1].y - query.start.y};
+        double told = (double)door_reply.cause_value;
+        TEST_ASSERT_TRUE(told >= hypot(to.x, to.y));
+        told = ceil(told * 1e3) / 1e3 / hypot(to.x, to.y);
+        query = door_query(2, query.start.x + told * to.x, query.start.y + told * to.y, 10.0, 4.0);
+        TEST_ASSERT_NOT_EQUAL_INT16(AISLE_STATUS_START_OCCUPIED, door_ask(&query)->cause);
+    }
+}
+
 static void test_a_goal_walled_in_is_proved_to_have_no_path(void) {
     hall_begin(12.0, 8.0);
     hall_add(5.0, 0.0, 5.2, 8.0);
@@ -425,6 +439,29 @@ static void test_a_goal_walled_in_is_proved_to_have_no_path(void) {
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_NO_PATH, cause_of(&query));
     TEST_ASSERT_EQUAL_INT32(11, door_reply.cause_id);
     place_is(10.0, 4.0);
+    TEST_ASSERT_EQUAL_INT16(2, door_reply.num_waypoints); // without the wall there would be a way
+    const aisle_waypoint_msg *wall = &door_reply.waypoints[1];
+    TEST_ASSERT_EQUAL_INT16(AISLE_WAYPOINT_GOAL, wall->flags);
+    TEST_ASSERT_EQUAL_INT32(1, wall->goal_id);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5.1, wall->x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0, wall->y);
+}
+
+static void test_what_is_proved_when_the_budget_ends_is_told(void) {
+    hall_begin(12.0, 8.0);
+    hall_add(5.0, 0.0, 5.2, 8.0);
+    take_hall();
+    aisle_query_msg query = door_query(1, 2.0, 4.0, 10.0, 4.0);
+    const int32_t all = door_ask(&query)->work_units;
+    bool proved = false; // from some budget on
+    for (int32_t budget = 1; budget < all; budget += all / 40) {
+        query.options.work_units = budget;
+        int16_t cause = cause_of(&query);
+        TEST_ASSERT_TRUE(cause == AISLE_STATUS_BUDGET || cause == AISLE_STATUS_NO_PATH);
+        TEST_ASSERT_TRUE(!proved || cause == AISLE_STATUS_NO_PATH);
+        proved = cause == AISLE_STATUS_NO_PATH;
+    }
+    TEST_ASSERT_TRUE(proved);
 }
 
 static void test_a_door_too_narrow_is_told_with_its_width_and_wall(void) {
@@ -437,8 +474,16 @@ static void test_a_door_too_narrow_is_told_with_its_width_and_wall(void) {
         door_settle();
         aisle_query_msg query = door_query(1, 2.0, 4.0, 10.0, 4.0);
         TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_TOO_NARROW, cause_of(&query));
-        TEST_ASSERT_DOUBLE_WITHIN(0.005, width, (double)door_reply.cause_value);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, width, (double)door_reply.cause_value);
         TEST_ASSERT_TRUE(door_reply.cause_id == 1 || door_reply.cause_id == 2);
+        TEST_ASSERT_EQUAL_INT16(4, door_reply.num_waypoints); // place, both sides, the first that may go
+        const aisle_waypoint_msg *side = &door_reply.waypoints[1];
+        TEST_ASSERT_EQUAL_INT32(door_reply.cause_id, side[0].goal_id);
+        TEST_ASSERT_EQUAL_INT32(3, side[0].goal_id + side[1].goal_id);
+        TEST_ASSERT_EQUAL_INT16(0, side[0].flags | side[1].flags);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, side[0].goal_id == 1 ? 3.31 : 3.31 + width, side[0].y);
+        TEST_ASSERT_EQUAL_INT16(AISLE_WAYPOINT_GOAL, side[2].flags);
+        TEST_ASSERT_EQUAL_INT32(1, side[2].goal_id);
         TEST_ASSERT_DOUBLE_WITHIN(0.4, 5.15, door_reply.waypoints[0].x);
         TEST_ASSERT_DOUBLE_WITHIN(width, 3.31 + width / 2.0, door_reply.waypoints[0].y);
     }
@@ -1318,7 +1363,9 @@ int main(void) {
     RUN_TEST(test_no_layout_no_vehicle_and_another_map_are_told);
     RUN_TEST(test_an_occupied_start_or_goal_is_told_with_what_is_in_the_way_and_where);
     RUN_TEST(test_a_start_or_goal_outside_is_told);
+    RUN_TEST(test_who_moves_as_far_as_told_has_moved_enough);
     RUN_TEST(test_a_goal_walled_in_is_proved_to_have_no_path);
+    RUN_TEST(test_what_is_proved_when_the_budget_ends_is_told);
     RUN_TEST(test_a_door_too_narrow_is_told_with_its_width_and_wall);
     RUN_TEST(test_a_small_budget_is_told_and_never_overdrawn_by_more_than_a_piece);
     RUN_TEST(test_the_configured_budget_holds_where_a_request_names_none);

@@ -43,9 +43,10 @@ static void wall_with_door(double x, double thickness, double low, double width)
 }
 
 static void sides_are(int32_t one, int32_t other) {
-    TEST_ASSERT_EQUAL_UINT32(2, why.sides);
-    TEST_ASSERT_TRUE((why.id[0] == one && why.id[1] == other) || (why.id[0] == other && why.id[1] == one));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, why.width, aisle_vec2_distance(why.side[0], why.side[1]));
+    TEST_ASSERT_EQUAL_UINT32(2, why.gap.sides);
+    TEST_ASSERT_TRUE((why.gap.id[0] == one && why.gap.id[1] == other) ||
+                     (why.gap.id[0] == other && why.gap.id[1] == one));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, why.gap.width, aisle_vec2_distance(why.gap.side[0], why.gap.side[1]));
 }
 
 static const aisle_vec2 left = {1.5, 2.5};
@@ -67,10 +68,10 @@ static void test_the_width_of_a_door_is_told_to_the_millimetre_with_both_its_wal
         open_hall(resolution);
         TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, i < 48U ? 1U : 2U, 1000));
         TEST_ASSERT_TRUE(why.proved && why.connected);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, width, why.width);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, width, why.gap.width);
         sides_are(1, 2);
-        TEST_ASSERT_TRUE(why.place.y > low && why.place.y < low + width);
-        TEST_ASSERT_TRUE(why.place.x > hall_boxes[0].x0 - 0.3 && why.place.x < hall_boxes[0].x1 + 0.3);
+        TEST_ASSERT_TRUE(why.gap.place.y > low && why.gap.place.y < low + width);
+        TEST_ASSERT_TRUE(why.gap.place.x > hall_boxes[0].x0 - 0.3 && why.gap.place.x < hall_boxes[0].x1 + 0.3);
     }
 }
 
@@ -80,7 +81,7 @@ static void test_a_door_between_the_strides_is_told_all_the_same(void) {
         open_hall(0.05F);
         TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, 8, 1000));
         TEST_ASSERT_TRUE(why.proved && why.connected);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.16, why.width);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.16, why.gap.width);
     }
 }
 
@@ -91,8 +92,35 @@ static void test_of_two_doors_the_wider_one_is_told(void) {
     hall_add(3.0, 4.12, 3.2, 5.0);
     open_hall(0.05F);
     TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, 1, 1000));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.62, why.width);
-    TEST_ASSERT_TRUE(why.place.y > 3.5);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.62, why.gap.width);
+    TEST_ASSERT_TRUE(why.gap.place.y > 3.5);
+}
+
+// Doors in a first and a second wall; the widest way leads through the wider one of each.
+static void test_of_doors_that_differ_by_a_millimetre_the_right_one_is_told(void) {
+    for (uint64_t s = 0; s < 40; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        double widest[2];
+        hall_begin(8.0, 6.0);
+        for (int wall = 0; wall < 2; wall++) {
+            double x = 3.0 + 1.5 * wall + uniform(&rng, -0.1, 0.1);
+            double about = uniform(&rng, 0.25, 0.8);
+            double y = 0.0;
+            widest[wall] = 0.0;
+            for (int k = 0; k < 3; k++) { // wider by 1 mm each, the order drawn
+                double width = about + 0.001 * (double)((k + (int)s) % 3);
+                double low = y + uniform(&rng, 0.6, 1.0);
+                hall_add(x, y, x + uniform(&rng, 0.05, 0.5), low);
+                y = low + width;
+                widest[wall] = fmax(widest[wall], width);
+            }
+            hall_add(x, y, x + 0.3, 6.0);
+        }
+        open_hall(s % 2U == 0U ? 0.05F : 0.1F);
+        TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, s % 4U < 2U ? 1U : 2U, 1000));
+        TEST_ASSERT_TRUE(why.proved && why.connected);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, fmin(widest[0], widest[1]), why.gap.width);
+    }
 }
 
 static void test_a_gap_between_two_corners_is_told_across(void) {
@@ -102,9 +130,9 @@ static void test_a_gap_between_two_corners_is_told_across(void) {
     open_hall(0.05F);
     TEST_ASSERT_EQUAL(AISLE_OK, run(aisle_vec2_of(1.0, 4.0), aisle_vec2_of(6.0, 1.0), 1, 1000));
     TEST_ASSERT_TRUE(why.proved && why.connected);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5, why.width);
-    TEST_ASSERT_DOUBLE_WITHIN(0.1, 3.2, why.place.x);
-    TEST_ASSERT_DOUBLE_WITHIN(0.1, 2.55, why.place.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5, why.gap.width);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 3.2, why.gap.place.x);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 2.55, why.gap.place.y);
 }
 
 static void test_a_station_close_to_a_wall_is_not_taken_for_the_narrow_place(void) {
@@ -114,7 +142,7 @@ static void test_a_station_close_to_a_wall_is_not_taken_for_the_narrow_place(voi
         aisle_vec2 start = {0.452 + 0.01 * k, 1.0}; // the body stands with its margin
         TEST_ASSERT_EQUAL(AISLE_OK, run(start, right, 1, 1000));
         TEST_ASSERT_TRUE(why.proved && why.connected);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.88, why.width);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.88, why.gap.width);
         sides_are(1, 2);
     }
 }
@@ -132,11 +160,12 @@ static void test_the_proof_stands_just_where_the_inner_disc_does_not_fit(void) {
 }
 
 static void test_a_closed_room_is_not_connected_and_that_is_proved(void) {
-    hall_begin(8.0, 5.0);
-    hall_add(3.0, 0.0, 3.001, 5.0);
-    open_hall(0.05F);
-    for (uint32_t stride = 1; stride <= 2; stride++) {
-        TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, stride, 1000));
+    for (uint32_t k = 0; k < 8U; k++) { // a stride must not leap over a wall one cell thick
+        double x = 3.0 + 0.02 * (double)(k / 2U);
+        hall_begin(8.0, 5.0);
+        hall_add(x, 0.0, x + 0.001, 5.0);
+        open_hall(0.05F);
+        TEST_ASSERT_EQUAL(AISLE_OK, run(left, right, 1U + k % 2U, 1000));
         TEST_ASSERT_TRUE(why.proved);
         TEST_ASSERT_FALSE(why.connected);
     }
@@ -172,6 +201,7 @@ int main(void) {
     RUN_TEST(test_the_width_of_a_door_is_told_to_the_millimetre_with_both_its_walls);
     RUN_TEST(test_a_door_between_the_strides_is_told_all_the_same);
     RUN_TEST(test_of_two_doors_the_wider_one_is_told);
+    RUN_TEST(test_of_doors_that_differ_by_a_millimetre_the_right_one_is_told);
     RUN_TEST(test_a_gap_between_two_corners_is_told_across);
     RUN_TEST(test_a_station_close_to_a_wall_is_not_taken_for_the_narrow_place);
     RUN_TEST(test_the_proof_stands_just_where_the_inner_disc_does_not_fit);

@@ -165,3 +165,45 @@ def test_negative_coordinates_need_no_equals_sign(tmp_path):
     assert cli.main(["query", "--start", "-1.5,-2", "--goal", "-3,4", "--goal", "-.5,1,-1.5", "--log", str(log)]) == 0
     query = next(iter(Recording(log, "AISLE").queries.values()))
     assert (query.start.x, query.start.y, query.goals[1].x, query.goals[1].theta) == (-1.5, -2.0, -0.5, -1.5)
+
+
+def refusal(cause, value, waypoints):
+    """waypoints: (x, y, flags, goal_id)."""
+    path = reply(1, [w[:2] for w in waypoints])
+    path.status, path.cause, path.cause_value, path.cause_id = path_t.NONE, cause, value, waypoints[1][3]
+    for w, told in zip(path.waypoints, waypoints):
+        w.flags, w.goal_id = told[2:]
+    return path
+
+
+REMOVED = waypoint_t.GOAL
+HINTED = [
+    (
+        refusal(status_t.TOO_NARROW, 2.13, [(5, 5, 0, 0), (4, 5, 0, 12), (6.13, 5, 0, -1), (3, 5, REMOVED, 7)]),
+        "TOO_NARROW, gap of 2.130 m between polygon 12 and the scanned map, at (5.00, 5.00), "
+        "removing polygon 7 would open the way",
+    ),
+    (
+        refusal(status_t.GOAL_OCCUPIED, 0.1201, [(5, 5, 0, 0), (5.1, 5.0664, 0, 0)]),
+        "GOAL_OCCUPIED, at (5.00, 5.00), move 0.121 m to (5.100, 5.066)",
+    ),
+    (
+        refusal(status_t.NO_PATH, 0.0, [(5, 5, 0, 0), (4, 5, REMOVED, 12), (3, 5, REMOVED, 7)]),
+        "NO_PATH, goal 12, at (5.00, 5.00), removing polygon 12 and polygon 7 would open the way",
+    ),
+]
+
+
+@pytest.mark.parametrize(("refused", "text"), HINTED)
+def test_a_refusal_says_and_shows_what_would_help(tmp_path, refused, text):
+    from aisle_tools import names
+
+    assert names.reason(refused) == text
+    log, out = tmp_path / "r.log", tmp_path / "p.png"
+    writer = LogWriter(log, "AISLE")
+    writer.publish("REPLY", refused)
+    writer.close()
+    scenario = str(DATA / "scenarios" / "barrier_1.json")
+    assert cli.main(["plot", "--scenario", scenario, "--replies", str(log), "--out", str(out)]) == 0
+    pixels = np.asarray(Image.open(out).convert("RGB")).reshape(-1, 3)
+    assert (np.abs(pixels.astype(int) - [0x7A, 0x3D, 0xB8]).max(axis=1) < 8).sum() > 20

@@ -6,6 +6,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static fix_scene scene;
+static aisle_layout_without without; // what the judge leaves out
 
 typedef struct nearest {
     long double gap;
@@ -16,6 +17,10 @@ static void offer(nearest *best, long double gap, int32_t id) {
     if (gap < best->gap || (gap <= best->gap && id < best->id)) {
         *best = (nearest){gap, id};
     }
+}
+
+static bool is_left_out(int32_t id) {
+    return (without.count > 0U && without.id[0] == id) || (without.count > 1U && without.id[1] == id);
 }
 
 // All polygons, all cells, all four sides.
@@ -29,6 +34,9 @@ static nearest judge_nearest(const aisle_convex *body) {
     for (uint32_t i = 0; i < scene.count; i++) {
         aisle_vec2 v[16];
         const aisle_convex shape = fix_shape(&scene.polygons[i], v);
+        if (is_left_out(scene.polygons[i].id)) {
+            continue;
+        }
         if (scene.polygons[i].kind == AISLE_POLYGON_OBSTACLE || scene.polygons[i].kind == AISLE_POLYGON_KEEPOUT) {
             offer(&best, judge_gap(body, &shape), scene.polygons[i].id);
         }
@@ -44,6 +52,20 @@ static nearest judge_nearest(const aisle_convex *body) {
     return best;
 }
 
+// The nearest one left out, and some other.
+static void check_without(aisle_rng *rng, const aisle_convex *body, double cap, int32_t nearest_id) {
+    without = (aisle_layout_without){{nearest_id, 123456}, 1U + aisle_rng_below(rng, 2)};
+    if (scene.count > 0U) {
+        without.id[1] = scene.polygons[aisle_rng_below(rng, scene.count)].id;
+    }
+    const nearest want = judge_nearest(body);
+    int32_t id;
+    const double gap = aisle_layout_gap_without(&fix_layout, &without, body, cap, &id);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, fmin((double)want.gap, cap), gap);
+    TEST_ASSERT_EQUAL_INT32(want.gap <= (long double)cap ? want.id : 0, id);
+    without.count = 0;
+}
+
 static void check_random_bodies(aisle_rng *rng, uint32_t trials) {
     for (uint32_t k = 0; k < trials; k++) {
         aisle_vec2 v[8];
@@ -53,12 +75,14 @@ static void check_random_bodies(aisle_rng *rng, uint32_t trials) {
         gen_polygon(rng, centre, gen_in(rng, 0.01, 0.7), gen_in(rng, 0.01, 0.4), n, v);
         const aisle_convex body = {v, n, k % 2U == 0U ? 0.0 : gen_in(rng, 0.0, 0.3)};
         const double cap = k % 5U == 0U ? 100.0 : gen_in(rng, 0.0, 1.0);
+        without.count = 0;
         const nearest want = judge_nearest(&body);
         int32_t id;
         const double gap = aisle_layout_gap(&fix_layout, &body, cap, &id);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, fmin((double)want.gap, cap), gap);
         TEST_ASSERT_EQUAL_INT32(want.gap <= (long double)cap ? want.id : 0, id);
         TEST_ASSERT_EQUAL_DOUBLE(gap, aisle_layout_gap(&fix_layout, &body, cap, NULL));
+        check_without(rng, &body, cap, want.id);
     }
 }
 

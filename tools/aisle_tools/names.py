@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from aisle import path_t, status_t
+import math
+
+from aisle import path_t, status_t, waypoint_t
 
 from aisle_tools.errors import UserError
 
@@ -51,7 +53,7 @@ def option_value(name: str, allowed: list[str]) -> int:
 
 
 def is_path(path: path_t) -> bool:
-    """False for a refusal, whose one waypoint, if any, is the place that is in the way."""
+    """False for a refusal, whose waypoints, if any, tell its reason."""
     return path.status != path_t.NONE and path.num_waypoints > 0
 
 
@@ -62,26 +64,65 @@ def place(path: path_t) -> tuple[float, float] | None:
     return path.waypoints[0].x, path.waypoints[0].y
 
 
+def gap_sides(path: path_t) -> list[waypoint_t]:
+    """The obstacles that form a gap too narrow, each where it is nearest to the other."""
+    if path.status != path_t.NONE or path.cause != status_t.TOO_NARROW:
+        return []
+    return [w for w in path.waypoints[1 : path.num_waypoints] if not w.flags & waypoint_t.GOAL]
+
+
+def free_place(path: path_t) -> tuple[float, float] | None:
+    """Where to an occupied start or goal would have to move."""
+    occupied = path.cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED)
+    if path.status != path_t.NONE or not occupied or path.num_waypoints < 2:
+        return None
+    return path.waypoints[1].x, path.waypoints[1].y
+
+
+def removals(path: path_t) -> list[waypoint_t]:
+    """The polygons whose removal would open the way, each at its centre."""
+    if path.status != path_t.NONE:
+        return []
+    return [w for w in path.waypoints[: path.num_waypoints] if w.flags & waypoint_t.GOAL]
+
+
+def rounded_up(value: float) -> float:
+    """To the millimetre: who moves so far has moved enough."""
+    return math.ceil(value * 1e3 - 1e-6) / 1e3
+
+
 def reason(path: path_t) -> str:
     """Why there is no path, in words."""
     text = cause_name(path.cause)
-    if path.cause == status_t.TOO_NARROW:
+    sides = gap_sides(path)
+    if len(sides) == 2:
+        text += f", gap of {path.cause_value:.3f} m between {' and '.join(obstacle(w.goal_id) for w in sides)}"
+    elif path.cause == status_t.TOO_NARROW:
         text += f", the gap is {path.cause_value:.3f} m"
-    if path.cause_id != 0:
+    if path.cause_id != 0 and len(sides) != 2:
         text += f", {what(path.cause, path.cause_id)}"
     where = place(path)
     if where is not None:
         text += f", at ({where[0]:.2f}, {where[1]:.2f})"
+    to = free_place(path)
+    if to is not None:
+        text += f", move {rounded_up(path.cause_value):.3f} m to ({to[0]:.3f}, {to[1]:.3f})"
+    gone = removals(path)
+    if gone:
+        text += f", removing {' and '.join(obstacle(w.goal_id) for w in gone)} would open the way"
     if path.cause in HINTS:
         text += f" ({HINTS[path.cause]})"
     return text
 
 
+def obstacle(ident: int) -> str:
+    return {-1: "the scanned map", -2: "the bounds"}.get(ident, f"polygon {ident}")
+
+
 def what(cause: int, ident: int) -> str:
     """The thing cause_id means."""
     if cause in (status_t.START_OCCUPIED, status_t.GOAL_OCCUPIED, status_t.TOO_NARROW, status_t.KINEMATIC):
-        where = {-1: "the scanned map", -2: "the bounds"}.get(ident, f"polygon {ident}")
-        return f"by {where}"
+        return f"by {obstacle(ident)}"
     if cause in (status_t.GOAL_OUTSIDE, status_t.NO_PATH):
         return f"goal {ident}"
     if cause == status_t.LIMIT:

@@ -29,6 +29,7 @@ STEP = 0.05  # m, of the coloured line
 SURROUNDINGS = 1.0  # m, shown around what is free
 KIND_COLOURS = ("#4a4a4a", "#b07d62", "#f2d492", "#d9c2e9", "#bcd8f0")
 REFUSED = "#d62728"
+HINT = "#7a3db8"  # what would help
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -148,6 +149,7 @@ class Picture:
 
     def _mark_refusal(self, asked: query_t | None, reply: path_t) -> None:
         text = f"{self.number}: {names.reason(reply)}"
+        self._mark_hints(reply)
         if asked is None:
             self._mark_unasked(reply, text)
             return
@@ -165,6 +167,20 @@ class Picture:
             return
         self.axes.plot([], [], "x", color=REFUSED, label=text)
         self.axes.legend(loc="upper left", fontsize=8)
+
+    def _mark_hints(self, reply: path_t) -> None:
+        """The gap as a line, a free place as a ring with an arrow to it, polygons to remove as squares."""
+        sides = names.gap_sides(reply)
+        if len(sides) == 2:
+            self.axes.plot([w.x for w in sides], [w.y for w in sides], "o-", color=REFUSED, ms=4, lw=2.5, zorder=8)
+        to, at = names.free_place(reply), names.place(reply)
+        if to is not None and at is not None:
+            arrow = {"arrowstyle": "->", "color": HINT, "lw": 1.8}
+            self.axes.annotate("", to, xytext=at, arrowprops=arrow, zorder=9)
+            self.axes.plot(*to, "o", ms=8, mfc="none", mec=HINT, mew=2.0, zorder=9)
+        for w in names.removals(reply):
+            self.axes.plot(w.x, w.y, "s", ms=11, mfc="none", mec=HINT, mew=2.0, zorder=9)
+            self._label((w.x, w.y), f"without {w.goal_id}", HINT)
 
     def _place(self, reply: path_t, start: tuple, goals: list[tuple]) -> tuple[float, float, float]:
         """(x, y, radius) of what stands in the way: as told, else guessed from the cause."""

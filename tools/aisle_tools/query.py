@@ -274,6 +274,9 @@ def as_dict(leg: Leg, reply: path_t, seconds: float) -> dict:
         "ms": 1000.0 * (reply.planning_time or seconds),
         "waypoints": reply.num_waypoints if names.is_path(reply) else 0,
         "place": names.place(reply),
+        "gap_between": [w.goal_id for w in names.gap_sides(reply)],
+        "move_to": names.free_place(reply),
+        "remove": [w.goal_id for w in names.removals(reply)],
         "certificate": reply.certificate & 0xFFFFFFFF,
     }
     if not math.isnan(leg.given_length):

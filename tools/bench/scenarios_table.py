@@ -15,7 +15,7 @@ from aisle import path_t
 from aisle_tools import query, vehicle
 from aisle_tools.scenario import Scenario, read_scenario
 
-RISK_WEIGHT = 8.0  # as in src/plan/objective.h
+RISK_WEIGHT = 15.0  # as in src/plan/objective.h
 TARGET_MEDIAN, TARGET_WORST = 1.02, 1.05  # of disc robots, shortest, margin none
 
 
