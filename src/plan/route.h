@@ -10,10 +10,10 @@
 // every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
 // try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
 // motion, with a stride and without. For pure length the disc starts with every cell: a narrow passage is worth more.
-// Budget: work units of everything together; spent before a first proof: cause BUDGET, or the cause if one is certain by
-// then; spent later: the first path is the answer. If the verifier turns the seed path down it is built again with stops
-// in all corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were not
-// proved) or VERIFY_FAILED.
+// Budget: work units of everything together; spent before a first proof: cause BUDGET, or the cause if one is certain
+// by then; spent later: the first path is the answer. If the verifier turns the seed path down it is built again with
+// stops in all corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
+// not proved) or VERIFY_FAILED.
 // Memory: from the arena, about 0.6 MiB and the searches' cells. Time: at most the budget plus one indivisible piece
 // of each stage.
 #ifndef AISLE_PLAN_ROUTE_H
