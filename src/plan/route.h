@@ -2,7 +2,8 @@
 //
 // Stages: CHECK start and goals exactly - per leg SEED (grid search, turning disc first, the exact body along the
 // motion if that finds nothing) and TAUT - BUILD and VERIFY the seed path - per leg SWARM - BUILD and VERIFY the better
-// legs - END. WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm
+// legs - END. NEAREST instead, when a stop is occupied (nearest.h); WHY, when no seed is found, and OPENING after it if
+// there is no way for certain (opening.h). The seed's proved path is ready (AISLE_PARTIAL) before the swarm
 // begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
 // The tangent search's proof that there is no way for the disc inside the footprint goes straight to WHY, whose grid is
@@ -11,9 +12,10 @@
 // every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
 // try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
 // motion, with a stride and without. For pure length the disc starts with every cell: a narrow passage is worth more.
-// Budget: work units of everything together; spent before a first proof: cause BUDGET; spent later: the first path is
-// the answer. If the verifier turns the seed path down it is built again with stops in all corners; if that fails too,
-// the cause is KINEMATIC (a way for the body exists, the turns it needs were not proved) or VERIFY_FAILED.
+// Budget: work units of everything together; spent before a first proof: cause BUDGET, or the cause if one is certain
+// by then; spent later: the first path is the answer. If the verifier turns the seed path down it is built again with
+// stops in all corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
+// not proved) or VERIFY_FAILED.
 // Memory: from the arena, about 0.6 MiB and the searches' cells. Time: at most the budget plus one indivisible piece
 // of each stage.
 #ifndef AISLE_PLAN_ROUTE_H

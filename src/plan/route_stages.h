@@ -1,7 +1,7 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT. route_why.c: WHY, OPENING.
-// route_proof.c: BUILD, VERIFY, SWARM.
+// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT.
+// route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H

@@ -8,13 +8,13 @@
 // 2. The widest way: bisection over the field's values for the largest one whose cells still connect, to half a cell,
 //    on every k-th cell first, on all if those do not connect at all; 1 fails too: walled in.
 //    The way itself then keeps off that least clearance wherever there is room.
-// 3. Its narrowest place: from the way's cells of small field values, the obstacle nearest and the one across form a gap
-//    if nothing comes nearer to its middle (layout_facing.h); its width is their exact distance. If none is made out so,
-//    cells are moved across the path to where the exact gap is largest, and the width is twice that (5 mm at a grid of
-//    0.05 m).
+// 3. Its narrowest place: from the way's cells of small field values, the obstacle nearest and the one across form a
+//    gap if nothing comes nearer to its middle (layout_facing.h); its width is their exact distance. If none is made
+//    out so, cells are moved across the path to where the exact gap is largest, and the width is twice that (5 mm at a
+//    grid of 0.05 m).
 // 4. Since the field tells widths to a cell or two only, gaps measured are barred and a way past them is searched among
 //    those that may be wider. The widest of the ways' narrowest gaps is told: a wider way would have been among them
-//    (every bar on it is no narrower than it is), up to AISLE_WHY_WAYS ways.
+//    (a bar on it was the narrowest gap of a way, and no narrower than this one), up to AISLE_WHY_WAYS ways.
 // Memory: none of its own. Time: about ten grid searches, then one a way measured; sliced.
 #ifndef AISLE_PLAN_WHY_H
 #define AISLE_PLAN_WHY_H

@@ -2,8 +2,8 @@
 
 #include "hall.h"
 
-// The judge floods a grid of its own, 4 cm, by brute force over hall.h's boxes: a set of boxes left out is open if cells
-// connect that keep 6 cm more than the reach, and shut if not even cells do that keep 6 cm less.
+// The judge floods a grid of its own, 4 cm, by brute force over hall.h's boxes: a set of boxes left out is open if
+// cells connect that keep 6 cm more than the reach, and shut if not even cells do that keep 6 cm less.
 
 #define CELL 0.04
 #define SPARE 0.06

@@ -76,6 +76,28 @@ static bool is_fair(const aisle_path_msg *reply) {
            c == AISLE_STATUS_TOO_NARROW || c == AISLE_STATUS_KINEMATIC || c == AISLE_STATUS_BUDGET;
 }
 
+// Where an occupied stop is told to move to, the body keeps its margin.
+static void judge_move(const aisle_query_msg *query, const aisle_path_msg *reply) {
+    const aisle_waypoint_msg *w = reply->waypoints;
+    const aisle_goal_msg *stop = reply->cause == AISLE_STATUS_START_OCCUPIED ? &query->start : NULL;
+    for (int16_t i = 0; stop == NULL && i < query->num_goals; i++) {
+        bool here = fabs(query->goals[i].x - w[0].x) < 1e-9 && fabs(query->goals[i].y - w[0].y) < 1e-9;
+        stop = here ? &query->goals[i] : NULL;
+    }
+    TEST_ASSERT_NOT_NULL(stop);
+    if (reply->num_waypoints < 2) {
+        TEST_ASSERT_TRUE((double)reply->cause_value <= 0.0);
+        return;
+    }
+    double gap = (double)stop->tolerance_theta >= 3.14159
+                     ? (double)hall_disc_gap(w[1].x, w[1].y, hall_vehicle.inner_radius)
+                     : hall_body_gap((aisle_pose2){w[1].x, w[1].y, stop->theta});
+    TEST_ASSERT_TRUE(gap >= hall_vehicle.margin + 1.4e-3);
+    double way = hypot(w[1].x - w[0].x, w[1].y - w[0].y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, way, (double)reply->cause_value);
+    TEST_ASSERT_TRUE((double)reply->cause_value >= way);
+}
+
 static void test_every_query_in_random_worlds_is_answered_fairly_and_every_path_is_clear(void) {
     int paths = 0;
     int refusals = 0;
@@ -99,6 +121,9 @@ static void test_every_query_in_random_worlds_is_answered_fairly_and_every_path_
                 paths++;
             } else {
                 TEST_ASSERT_TRUE(is_fair(reply));
+                if (reply->cause == AISLE_STATUS_START_OCCUPIED || reply->cause == AISLE_STATUS_GOAL_OCCUPIED) {
+                    judge_move(&query, reply);
+                }
                 refusals++;
             }
         }

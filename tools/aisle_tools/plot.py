@@ -141,10 +141,9 @@ class Picture:
         for place, what in [(start, "start"), (goals[-1], "goal")]:
             self._label(place, str(self.number), "#2ca02c" if what == "start" else "#c75f00")
 
-    def _label(self, place: tuple[float, float], text: str, colour: str) -> None:
-        note = self.axes.annotate(
-            text, place, xytext=(5, 5), textcoords="offset points", fontsize=8, color=colour, weight="bold", zorder=7
-        )
+    def _label(self, place: tuple[float, float], text: str, colour: str, box: dict | None = None) -> None:
+        look = {"fontsize": 8, "color": colour, "weight": "bold", "zorder": 7, "bbox": box}
+        note = self.axes.annotate(text, place, xytext=(7, 7), textcoords="offset points", **look)
         note.set_in_layout(False)
 
     def _mark_refusal(self, asked: query_t | None, reply: path_t) -> None:
@@ -180,7 +179,7 @@ class Picture:
             self.axes.plot(*to, "o", ms=8, mfc="none", mec=HINT, mew=2.0, zorder=9)
         for w in names.removals(reply):
             self.axes.plot(w.x, w.y, "s", ms=11, mfc="none", mec=HINT, mew=2.0, zorder=9)
-            self._label((w.x, w.y), f"without {w.goal_id}", HINT)
+            self._label((w.x, w.y), f"without {w.goal_id}", HINT, box={"boxstyle": "round", "fc": "white", "ec": HINT})
 
     def _place(self, reply: path_t, start: tuple, goals: list[tuple]) -> tuple[float, float, float]:
         """(x, y, radius) of what stands in the way: as told, else guessed from the cause."""
