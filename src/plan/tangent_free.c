@@ -15,10 +15,10 @@ typedef struct straight { // the way of a disc from p on
 
 // Exact: the way against one convex polygon.
 static bool is_clear_of(const straight *way, const aisle_convex *shape) {
-    double left = INFINITY; // least distance to the left of the way's line, and least to its right
-    double right = INFINITY;
-    double ahead = -INFINITY;
-    double behind = INFINITY;
+    double left = (double)INFINITY; // least distance to the left of the way's line, and least to its right
+    double right = (double)INFINITY;
+    double ahead = -(double)INFINITY;
+    double behind = (double)INFINITY;
     for (uint32_t i = 0; i < shape->n; i++) {
         aisle_vec2 to = aisle_vec2_sub(shape->v[i], way->p);
         double off = aisle_vec2_cross(way->d, to);
