@@ -5,6 +5,8 @@
 // legs - END. WHY instead, when no seed is found. The seed's proved path is ready (AISLE_PARTIAL) before the swarm
 // begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
+// PSO with objective PAPER is the paper's own method alone: CHECK, per leg its swarm (PAPER), BUILD, VERIFY, END; its
+// path or a refusal (BUDGET: it found none, which proves nothing), never a seed's path.
 // Attempts at a seed, until one finds a way: the turning disc, with AISLE_ROUTE_STRIDE between search cells, then with
 // every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
 // try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
@@ -19,6 +21,7 @@
 
 #include "plan/compose.h"
 #include "plan/leg.h"
+#include "plan/paper_swarm.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
 #include "plan/taut.h"
@@ -56,6 +59,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_BUILD,
     AISLE_ROUTE_VERIFY,
     AISLE_ROUTE_SWARM,
+    AISLE_ROUTE_PAPER,
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_END
 } aisle_route_stage;
@@ -69,6 +73,7 @@ typedef struct aisle_route {
     aisle_seed seed;
     aisle_taut taut;
     aisle_swarm swarm;
+    aisle_paper_swarm paper;
     aisle_compose compose;
     aisle_verify verify;
     aisle_why why;

@@ -24,7 +24,7 @@ static double beeline(const aisle_route *self) {
 
 static void seal(aisle_route *self) {
     aisle_path_msg *path = self->path;
-    bool swarm = self->trial == &self->better;
+    bool swarm = self->trial == &self->better || aisle_route_is_paper(&self->request.options);
     path->planner = swarm ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
     path->work_units = (int32_t)self->spent;
     float bound = (float)(beeline(self) * (1.0 - 1e-6));
@@ -122,7 +122,8 @@ static aisle_status after_first_proof(aisle_route *self) {
     // turning disc) and other objectives.
     bool taut_is_best = self->request.options.planner == AISLE_OPTIONS_AUTO &&
                         aisle_objective_is_length(&self->objective) && aisle_vehicle_is_disc(self->vehicle);
-    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops) {
+    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || taut_is_best || self->stops ||
+        aisle_route_is_paper(&self->request.options)) {
         self->stage = AISLE_ROUTE_END;
         return AISLE_OK;
     }

@@ -18,6 +18,13 @@ static bool options_are_known(const aisle_options_msg *options) {
            options->num_samples >= 0;
 }
 
+// Clearances and speeds of the paper's path are measured as of any other; what it minimises is its own.
+static bool take_objective(aisle_route *self) {
+    aisle_options_msg options = self->request.options;
+    options.objective = aisle_route_is_paper(&options) ? AISLE_OPTIONS_SHORTEST : options.objective;
+    return aisle_objective_of(&options, self->vehicle, &self->objective);
+}
+
 static bool in_bounds(const aisle_route *self, aisle_vec2 p) {
     aisle_aabb bounds = aisle_layout_bounds(self->layout);
     return p.x >= bounds.lo.x && p.x <= bounds.hi.x && p.y >= bounds.lo.y && p.y <= bounds.hi.y;
@@ -54,8 +61,7 @@ static void begin_leg(aisle_route *self, uint32_t attempt);
 
 aisle_status aisle_route_check(aisle_route *self) {
     const aisle_request *request = &self->request;
-    if (!options_are_known(&request->options) ||
-        !aisle_objective_of(&request->options, self->vehicle, &self->objective)) {
+    if (!options_are_known(&request->options) || !take_objective(self)) {
         return aisle_route_refuse(self, AISLE_STATUS_MALFORMED, request->options.planner,
                                   (double)request->options.objective);
     }
@@ -64,10 +70,14 @@ aisle_status aisle_route_check(aisle_route *self) {
     for (int16_t i = 0; i < request->num_goals && st == AISLE_BUSY; i++) {
         st = check_stop(self, &request->goals[i], false);
     }
-    if (st == AISLE_BUSY) {
-        begin_leg(self, 0);
+    if (st != AISLE_BUSY) {
+        return st;
     }
-    return st;
+    if (aisle_route_is_paper(&request->options)) {
+        return aisle_route_begin_paper(self);
+    }
+    begin_leg(self, 0);
+    return AISLE_BUSY;
 }
 
 // ---- SEED, TAUT

@@ -1,7 +1,7 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
 // route.c: memory, budget, the order of stages. route_seed.c: CHECK, SEED, TAUT, WHY. route_proof.c: BUILD, VERIFY,
-// SWARM.
+// SWARM. route_paper.c: PAPER.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
@@ -37,6 +37,11 @@ aisle_status aisle_route_check(aisle_route *self);
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
+
+// route_paper.c: the paper's own swarm in place of everything before BUILD.
+bool aisle_route_is_paper(const aisle_options_msg *options);
+aisle_status aisle_route_begin_paper(aisle_route *self);
+aisle_status aisle_route_step_paper(aisle_route *self, uint32_t units);
 
 // route_proof.c
 void aisle_route_begin_build(aisle_route *self, aisle_proof *trial);
