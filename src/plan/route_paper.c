@@ -18,6 +18,8 @@ static aisle_status next_leg(aisle_route *self) {
         self->points[self->point_count++] = from;
         aisle_status st = aisle_paper_swarm_start(&self->paper, &self->space, &self->request.options, from, to);
         if (st == AISLE_OK) {
+            self->points[self->point_count++] = to; // only its ends: the way is the swarm's
+            leg->count = 2;
             return AISLE_BUSY;
         }
         if (st == AISLE_ERR_CAPACITY) {
