@@ -15,6 +15,7 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
     aisle_space_carve(&self->space, arena, limits->cells);
     carve_searches(self, arena, limits);
     aisle_swarm_carve(&self->swarm, arena);
+    aisle_paper_swarm_carve(&self->paper, arena);
     aisle_compose_carve(&self->compose, arena);
     self->points = (aisle_vec2 *)aisle_arena_take(arena, AISLE_ROUTE_POINTS, sizeof(aisle_vec2));
     self->legs = (aisle_leg *)aisle_arena_take(arena, AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_leg));
@@ -95,6 +96,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_verify(self, units);
     case AISLE_ROUTE_SWARM:
         return aisle_route_step_swarm(self, units);
+    case AISLE_ROUTE_PAPER:
+        return aisle_route_step_paper(self, units);
     case AISLE_ROUTE_WHY:
         return aisle_route_step_why(self, units);
     case AISLE_ROUTE_NEXT:

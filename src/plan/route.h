@@ -8,6 +8,8 @@
 // AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
 // The tangent search's proof that there is no way for the disc inside the footprint goes straight to WHY, whose grid is
 // a second opinion: where it sees a doubt the dear attempts are made all the same.
+// PSO with objective PAPER is the paper's own method alone: CHECK, per leg its swarm (PAPER), BUILD, VERIFY, END; its
+// path or a refusal (BUDGET: it found none, which proves nothing), never a seed's path.
 // Attempts at a seed, until one finds a way: the turning disc, with AISLE_ROUTE_STRIDE between search cells, then with
 // every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
 // try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
@@ -25,6 +27,7 @@
 #include "plan/leg.h"
 #include "plan/nearest.h"
 #include "plan/opening.h"
+#include "plan/paper_swarm.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
 #include "plan/tangent.h"
@@ -61,7 +64,8 @@ typedef struct aisle_proof { // an encoded path and what it is worth
 typedef enum aisle_way_kind {
     AISLE_WAY_SHORT, // exactly, by the tangent search, at the margin
     AISLE_WAY_CLEAR, // the same at the creep clearance, where that is possible; else as GRID
-    AISLE_WAY_GRID   // by the grid's search
+    AISLE_WAY_GRID,  // by the grid's search
+    AISLE_WAY_PAPER  // by the paper's own swarm
 } aisle_way_kind;
 
 typedef struct aisle_way {
@@ -79,6 +83,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_BUILD,
     AISLE_ROUTE_VERIFY,
     AISLE_ROUTE_SWARM,
+    AISLE_ROUTE_PAPER,
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_NEXT, // the way under way is done with
     AISLE_ROUTE_DROP, // or leads nowhere
@@ -101,6 +106,7 @@ typedef struct aisle_route {
     aisle_seed seed;
     aisle_taut taut;
     aisle_swarm swarm;
+    aisle_paper_swarm paper;
     aisle_compose compose;
     aisle_verify verify;
     aisle_why why;

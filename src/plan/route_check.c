@@ -5,7 +5,10 @@ static bool options_are_known(const aisle_options_msg *options) {
                    options->planner == AISLE_OPTIONS_ASTAR;
     bool interpolation =
         options->interpolation == AISLE_OPTIONS_SPLINE || options->interpolation == AISLE_OPTIONS_LINEAR;
-    return planner && interpolation && options->risk_weight >= 0.0F && options->work_units >= 0 &&
+    bool is_paper = options->objective == AISLE_OPTIONS_PAPER && options->planner == AISLE_OPTIONS_PSO;
+    bool objective =
+        is_paper || (options->objective >= AISLE_OPTIONS_SAFEST && options->objective <= AISLE_OPTIONS_LEAST_ENERGY);
+    return planner && objective && interpolation && options->risk_weight >= 0.0F && options->work_units >= 0 &&
            options->num_samples >= 0;
 }
 
@@ -48,8 +51,7 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
 
 aisle_status aisle_route_check(aisle_route *self) {
     const aisle_request *request = &self->request;
-    if (!options_are_known(&request->options) ||
-        !aisle_objective_of(&request->options, self->vehicle, &self->objective)) {
+    if (!options_are_known(&request->options)) {
         return aisle_route_refuse(self, AISLE_STATUS_MALFORMED, request->options.planner,
                                   (double)request->options.objective);
     }

@@ -60,6 +60,9 @@ static void begin_verify(aisle_route *self) {
 
 // The way built could not be proved or does not fit: what next?
 static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisle_vec2 place) {
+    if (self->way->kind == AISLE_WAY_PAPER) { // the paper's way or none
+        return aisle_route_give_way_up(self, cause, id, 0.0, place);
+    }
     bool tight = self->way->kind != AISLE_WAY_GRID && !self->is_wide && !aisle_vehicle_is_disc(self->vehicle);
     if (any_swarm_leg(self)) { // the way without it was proved before
         return aisle_route_next_way(self);
@@ -163,7 +166,7 @@ static aisle_status disproved(aisle_route *self) {
     self->verify_failed++;
     const aisle_verify *verify = &self->verify;
     aisle_leg *leg = &self->legs[leg_of_waypoint(self, verify->fault_waypoint)];
-    if (leg->use_swarm) {
+    if (leg->use_swarm && self->way->kind != AISLE_WAY_PAPER) {
         leg->use_swarm = false;
         return rebuild(self);
     }

@@ -1,7 +1,7 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
 // route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT.
-// route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM.
+// route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
@@ -89,6 +89,10 @@ void aisle_route_begin_why(aisle_route *self, uint32_t stride);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
 // OPENING: what would have to go; the cause is told already.
 aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units);
+
+// route_paper.c: the paper's own swarm in place of everything before BUILD.
+void aisle_route_begin_paper(aisle_route *self);
+aisle_status aisle_route_step_paper(aisle_route *self, uint32_t units);
 
 // route_proof.c
 aisle_compose_request aisle_route_build_request(aisle_route *self);

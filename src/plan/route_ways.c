@@ -16,6 +16,7 @@ static const aisle_way quickest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
                                      {AISLE_WAY_CLEAR, AISLE_OPTIONS_SAFEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_LEAST_ENERGY}};
+static const aisle_way papers = {AISLE_WAY_PAPER, AISLE_OPTIONS_SHORTEST};
 static const aisle_way by_grid[] = {{AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_SHORTEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
@@ -25,7 +26,8 @@ static const aisle_way by_grid[] = {{AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST},
 static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
     int8_t wish = self->request.options.objective;
     if (self->request.options.planner == AISLE_OPTIONS_PSO) { // the swarm by name: on its own objective's seed alone
-        return n == 0U ? &by_grid[wish] : NULL;
+        const aisle_way *way = wish == AISLE_OPTIONS_PAPER ? &papers : &by_grid[wish];
+        return n == 0U ? way : NULL;
     }
     switch (wish) {
     case AISLE_OPTIONS_SHORTEST:
@@ -49,7 +51,11 @@ static void begin_way(aisle_route *self) {
     double keep = vehicle->margin + AISLE_SPACE_SLACK;
     bool is_clear = self->way->kind == AISLE_WAY_CLEAR;
     self->room = is_clear ? aisle_max(vehicle->creep_clearance + CREEP_SPARE, keep) : keep;
-    aisle_route_begin_legs(self);
+    if (self->way->kind == AISLE_WAY_PAPER) {
+        aisle_route_begin_paper(self);
+    } else {
+        aisle_route_begin_legs(self);
+    }
 }
 
 void aisle_route_begin_ways(aisle_route *self) {

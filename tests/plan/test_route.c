@@ -362,6 +362,55 @@ static void test_memory_is_about_what_the_header_says(void) {
     TEST_ASSERT_TRUE(arena.used < 800U << 10);
 }
 
+static void test_the_papers_method_gives_a_proved_path_of_its_own_or_a_plain_refusal(void) {
+    int paths = 0;
+    hall_disc(0.3, 0.1F);
+    hall_begin(10.0, 8.0);
+    hall_add(3.0, 3.0, 4.0, 5.2);
+    hall_add(6.0, 2.0, 7.5, 4.5);
+    open_hall();
+    for (int32_t seed = 1; seed <= SEEDS; seed++) {
+        for (int8_t kind = AISLE_OPTIONS_SPLINE; kind <= AISLE_OPTIONS_LINEAR; kind++) {
+            ask(AISLE_OPTIONS_PSO, 1.0, 4.0, 9.0, 4.0);
+            request.options.objective = AISLE_OPTIONS_PAPER;
+            request.options.interpolation = kind;
+            request.options.seed = seed;
+            TEST_ASSERT_EQUAL_INT(0, plan(1000)); // no path of another method goes before
+            if (aisle_route_answer(&route) == NULL) {
+                TEST_ASSERT_NOT_EQUAL_INT16(0, route.cause.cause);
+                continue;
+            }
+            (void)proof();
+            TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_PSO, answer.planner);
+            paths++;
+        }
+    }
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(SEEDS, paths);
+}
+
+static void test_the_papers_method_does_not_call_its_failure_a_proof(void) {
+    hall_disc(0.3, 0.1F);
+    hall_begin(10.0, 8.0);
+    hall_add(4.0, 0.0, 5.0, 8.0);
+    open_hall();
+    ask(AISLE_OPTIONS_PSO, 1.0, 4.0, 9.0, 4.0);
+    request.options.objective = AISLE_OPTIONS_PAPER;
+    TEST_ASSERT_EQUAL_INT(0, plan(5000));
+    TEST_ASSERT_NULL(aisle_route_answer(&route));
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_BUDGET, route.cause.cause);
+}
+
+static void test_the_papers_objective_belongs_to_its_planner_alone(void) {
+    const int8_t planners[] = {AISLE_OPTIONS_AUTO, AISLE_OPTIONS_ASTAR};
+    open_hall();
+    for (int i = 0; i < 2; i++) {
+        ask(planners[i], 1.0, 4.0, 9.0, 4.0);
+        request.options.objective = AISLE_OPTIONS_PAPER;
+        (void)plan(5000);
+        TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_MALFORMED, route.cause.cause);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_auto_is_never_worse_than_the_seed_nor_than_astar_and_every_answer_is_free);
@@ -382,5 +431,8 @@ int main(void) {
     RUN_TEST(test_a_full_open_list_is_a_limit);
     RUN_TEST(test_the_answer_carries_the_ids_it_was_asked_with);
     RUN_TEST(test_memory_is_about_what_the_header_says);
+    RUN_TEST(test_the_papers_method_gives_a_proved_path_of_its_own_or_a_plain_refusal);
+    RUN_TEST(test_the_papers_method_does_not_call_its_failure_a_proof);
+    RUN_TEST(test_the_papers_objective_belongs_to_its_planner_alone);
     return UNITY_END();
 }

@@ -20,8 +20,9 @@ COMMANDS = {
     "watch": ("watch", "live view of the daemon"),
     "plot": ("plot", "picture of the map and paths"),
     "check": ("checks", "judge recorded paths independently"),
+    "paper": ("paper", "a paper's figures beside ours, with pictures"),
 }
-WITHOUT_LOG = ("watch", "plot", "check")
+WITHOUT_LOG = ("watch", "plot", "check", "paper")
 
 
 def join_negative(argv: list[str]) -> list[str]:
