@@ -109,20 +109,19 @@ static aisle_pso_cost cost(void *ctx, const float *x) {
 static bool draw_circles(aisle_paper_swarm *self) {
     const aisle_layout *layout = self->space->layout;
     aisle_aabb bounds = aisle_layout_bounds(layout);
+    double wall = AISLE_PAPER_WALL * aisle_min(bounds.hi.x - bounds.lo.x, bounds.hi.y - bounds.lo.y);
     self->circles = 0;
     for (uint32_t i = 0; i < aisle_layout_zone_count(layout); i++) {
         const aisle_zone *zone = aisle_layout_zone(layout, i);
         aisle_convex shape = aisle_layout_zone_shape(layout, zone);
         aisle_aabb box = aisle_convex_aabb(&shape);
-        bool outside =
-            box.hi.x <= bounds.lo.x || box.lo.x >= bounds.hi.x || box.hi.y <= bounds.lo.y || box.lo.y >= bounds.hi.y;
-        if (!aisle_zone_is_obstacle(zone) || outside) {
+        double half = 0.5 * aisle_vec2_distance(box.lo, box.hi);
+        if (!aisle_zone_is_obstacle(zone) || half > wall) {
             continue;
         }
         if (self->circles == AISLE_PAPER_OBSTACLES_MAX) {
             return false;
         }
-        double half = 0.5 * aisle_vec2_distance(box.lo, box.hi);
         self->circle[self->circles++] =
             (aisle_paper_circle){aisle_vec2_lerp(box.lo, box.hi, 0.5), half + self->space->vehicle->outer_radius};
     }

@@ -13,8 +13,8 @@
 // circles cannot be what collides). 200 iterations, w falling linearly from 0.9 to 0.4, c1 = c2 = 2.
 // Where the paper is silent, ours: the number of via-points (it says only that the spline needs at least 4 points),
 // 50 particles, alpha 1.05 (table 1 has OA 0 at d = R + r: near 1), beta 2 (its three pairs of paths need beta above 1.7 for the safe one to have the lesser F).
-// Obstacles whose box lies outside the bounds (walls) have no circle: it would cover the hall. Scans have none either;
-// both still collide.
+// Obstacles with R above a quarter of the bounds' shorter side (walls) have no circle: it would cover the hall. Scans
+// have none either; both still collide.
 // Samples are even by arc length from the very start. The paper's left the first leg out with 100 samples: `skip_first`
 // brings that back, for comparison only; options cannot.
 // Memory: 256 circles, the swarm's floats, from the arena. Time: evaluations * samples * obstacles; units: one per
@@ -36,6 +36,7 @@
 #define AISLE_PAPER_OBSTACLES_MAX 256U
 #define AISLE_PAPER_ALPHA 1.05
 #define AISLE_PAPER_BETA 2.0
+#define AISLE_PAPER_WALL 0.25 // of the shorter side
 #define AISLE_PAPER_BETA_MAX 1e6
 #define AISLE_PAPER_SAMPLES_PER_UNIT 4U
 #define AISLE_PAPER_CIRCLES_PER_UNIT 64U

@@ -142,7 +142,7 @@ static void test_most_seeds_find_a_way_between_two_shelves(void) {
 
 static void test_a_larger_beta_buys_a_lower_oa_with_length(void) {
     hall_begin(10.0, 8.0);
-    hall_add(3.0, 4.2, 7.0, 4.6); // long and thin: its circle reaches far
+    hall_add(3.2, 4.2, 6.8, 4.6); // long and thin: its circle reaches far
     open_hall();
     double oa[2] = {0.0, 0.0};
     double length[2] = {0.0, 0.0};
@@ -204,8 +204,9 @@ static void test_a_shut_hall_yields_no_way(void) {
     TEST_ASSERT_TRUE(f.violation > 0.0);
 }
 
-static void test_walls_outside_the_bounds_have_no_circle(void) {
-    hall_add(-0.2, -0.2, 10.2, 0.0);
+static void test_walls_have_no_circle(void) {
+    hall_add(0.5, 0.1, 9.5, 0.3);
+    hall_add(0.1, 0.5, 0.3, 4.52); // R is 2.012, a quarter of the shorter side 2
     open_hall();
     TEST_ASSERT_EQUAL(AISLE_OK, begin());
     TEST_ASSERT_EQUAL_UINT32(2, swarm.circles);
@@ -234,7 +235,7 @@ int main(void) {
     RUN_TEST(test_the_same_seed_gives_the_same_bits_however_the_run_is_cut);
     RUN_TEST(test_samples_begin_at_the_start_unless_the_flaw_is_asked_for);
     RUN_TEST(test_a_shut_hall_yields_no_way);
-    RUN_TEST(test_walls_outside_the_bounds_have_no_circle);
+    RUN_TEST(test_walls_have_no_circle);
     RUN_TEST(test_odd_options_are_brought_into_range_and_no_way_at_all_is_refused);
     return UNITY_END();
 }

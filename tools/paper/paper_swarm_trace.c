@@ -115,7 +115,9 @@ static void print_trace(void) {
     for (uint32_t i = 0; i < n; i++) {
         (void)printf("%s[%.9g, %.9g]", i > 0U ? ", " : "", points[i].x, points[i].y);
     }
-    (void)printf("]}\n");
+    swarm.skip_first = false; // the same way, sampled from its very start
+    (void)aisle_paper_swarm_figures(&swarm, &f);
+    (void)printf("],\n \"whole\": [%.9g, %.9g, %.9g, %.9g]}\n", f.fitness, f.length, f.oa, f.violation);
 }
 
 int main(int argc, char **argv) {
