@@ -18,7 +18,7 @@ from aisle import options_t, path_t, query_t, vehicle_t
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-from aisle_tools import geometry, layouts, names, query, risk, vehicle  # noqa: E402
+from aisle_tools import geometry, hall, layouts, names, query, risk, vehicle  # noqa: E402
 from aisle_tools.bus import LogWriter, Recording  # noqa: E402
 from aisle_tools.check import Obstacles, check_path  # noqa: E402
 from aisle_tools.errors import UserError  # noqa: E402
@@ -183,18 +183,9 @@ def vehicle_of(case: Case, margin: float) -> vehicle_t:
     return msg
 
 
-def hall_text(case: Case, margin: float) -> str:
-    """The hall as paper-swarm reads it."""
-    s = case.scenario
-    polygons = s.world.obstacles()
-    rows = [s.world.bounds, (s.radius, margin if margin > 0.0 else -1.0), s.start[:2], s.goals[0][:2], (len(polygons),)]
-    rows += [(len(p.vertices), *p.vertices.ravel()) for p in polygons]
-    return "\n".join(" ".join(f"{float(v):.17g}" for v in row) for row in rows)
-
-
 def trace(args: argparse.Namespace, case: Case, kind: str, samples: int, seed: int, skip: bool = False) -> dict:
     words = [program(args, "paper-swarm"), KINDS[kind], samples, seed, BETA, int(skip)]
-    return json.loads(call(words, hall_text(case, args.margin)))
+    return json.loads(call(words, hall.text(case.scenario, args.margin)))
 
 
 # ---- report
