@@ -18,6 +18,12 @@
 
 #define AISLE_TAUT_PASSES 16U
 #define AISLE_TAUT_GAIN 1e-5
+#define AISLE_TAUT_KNOWN 128U // costs of legs kept, each in the place its ends' bits name
+
+typedef struct aisle_taut_known {
+    aisle_vec2 a, b;
+    double cost; // from a to b
+} aisle_taut_known;
 
 typedef struct aisle_taut {
     const aisle_space *space;
@@ -29,6 +35,7 @@ typedef struct aisle_taut {
     double arc_radius; // m
     double cost;       // of the whole polyline when the pass began
     uint32_t units;    // since the last step
+    aisle_taut_known known[AISLE_TAUT_KNOWN];
 } aisle_taut;
 
 // Begins on points[count], count >= 2, every leg free.
