@@ -33,6 +33,8 @@ void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_ob
 // The leg's cost by exact gaps of the body, every EXACT_SPACING; or what shows that it is above `most`, since no metre
 // costs less than one.
 static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b, double most) {
+    const aisle_vehicle *vehicle = self->space->vehicle;
+    double cap = aisle_max(vehicle->creep_clearance, self->space->keep); // no objective cares for more
     double length = aisle_vec2_distance(a, b);
     double samples = floor(length / EXACT_SPACING) + 2.0;
     double theta = aisle_atan2(b.y - a.y, b.x - a.x);
@@ -40,9 +42,9 @@ static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b, doubl
     double enough = most * (1.0 + 1e-9) * samples / aisle_max(length, 1e-9); // 1e-9: more than rounding
     for (double i = 0.5; i < samples && sum <= enough; i += 1.0) {
         aisle_vec2 p = aisle_vec2_lerp(a, b, i / samples);
-        double clearance = self->space->far_clearance;
-        if (!aisle_space_is_far(self->space, p)) {
-            clearance = aisle_space_gap(self->space, (aisle_pose2){p.x, p.y, theta}, clearance, NULL);
+        double clearance = cap;
+        if (aisle_grid_gap_lower(self->space->grid, p) - vehicle->outer_radius < cap) {
+            clearance = aisle_space_gap(self->space, (aisle_pose2){p.x, p.y, theta}, cap, NULL);
             self->units++;
         }
         sum += aisle_objective_density(self->objective, clearance, 0.0) - 1.0;
