@@ -298,17 +298,23 @@ static double root_of(const aisle_space *self, uint16_t field) {
 
 // Distance from p to occupied cells, interpolated between the four centres around p.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p) {
-    if (aisle_space_is_far(self, p)) {
+    const aisle_lattice *lattice = &self->grid->lattice;
+    const uint16_t *field = self->grid->field;
+    double w = (double)lattice->w;
+    double h = (double)lattice->h;
+    double x = (p.x - lattice->x0) * self->per_metre;
+    double y = (p.y - lattice->y0) * self->per_metre;
+    if (x >= 0.0 && x < w && y >= 0.0 && y < h &&
+        field[(size_t)(uint32_t)y * lattice->w + (uint32_t)x] >= self->far_field) {
         return self->far_clearance;
     }
-    const aisle_lattice *lattice = &self->grid->lattice;
-    double fx = aisle_clamp((p.x - lattice->x0) * self->per_metre - 0.5, 0.0, (double)(lattice->w - 1U));
-    double fy = aisle_clamp((p.y - lattice->y0) * self->per_metre - 0.5, 0.0, (double)(lattice->h - 1U));
+    double fx = aisle_clamp(x - 0.5, 0.0, w - 1.0);
+    double fy = aisle_clamp(y - 0.5, 0.0, h - 1.0);
     uint32_t ix = (uint32_t)fx;
     uint32_t iy = (uint32_t)fy;
     uint32_t right = ix + 1U < lattice->w ? 1U : 0U;
     uint32_t up = iy + 1U < lattice->h ? lattice->w : 0U;
-    const uint16_t *at = self->grid->field + (size_t)iy * lattice->w + ix;
+    const uint16_t *at = field + (size_t)iy * lattice->w + ix;
     double tx = fx - (double)ix;
     double ty = fy - (double)iy;
     double low = root_of(self, at[0]) * (1.0 - tx) + root_of(self, at[right]) * tx;

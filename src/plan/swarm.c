@@ -21,10 +21,6 @@ void aisle_swarm_carve(aisle_swarm *self, aisle_arena *arena) {
 static double shortfall(aisle_swarm *self, const aisle_spline_sample *at, double *clearance) {
     const aisle_space *space = self->space;
     const aisle_vehicle *vehicle = space->vehicle;
-    if (aisle_space_is_far(space, at->p)) {
-        *clearance = space->far_clearance;
-        return 0.0;
-    }
     *clearance = aisle_space_clearance_about(space, at->p);
     if (*clearance - space->grid->lattice.res >= space->keep + vehicle->outer_radius - vehicle->inner_radius) {
         return 0.0; // the interpolation errs by less than a cell (space.h)

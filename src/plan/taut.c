@@ -5,6 +5,7 @@
 #include "plan/cost.h"
 
 #include <math.h>
+#include <string.h>
 
 #define RESOLUTION 5e-4   // m, of a slide
 #define EXACT_SPACING 0.4 // m
@@ -29,29 +30,59 @@ void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_ob
                          .cost = -1.0};
 }
 
-// The leg's cost by exact gaps of the body, every EXACT_SPACING.
-static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
+// The leg's cost by exact gaps of the body, every EXACT_SPACING; or what shows that it is above `most`, since no metre
+// costs less than one.
+static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b, double most) {
+    const aisle_vehicle *vehicle = self->space->vehicle;
+    double cap = aisle_max(vehicle->creep_clearance, self->space->keep); // no objective cares for more
     double length = aisle_vec2_distance(a, b);
     double samples = floor(length / EXACT_SPACING) + 2.0;
     double theta = aisle_atan2(b.y - a.y, b.x - a.x);
-    double sum = 0.0;
-    for (double i = 0.5; i < samples; i += 1.0) {
+    double sum = samples;                                                    // each at least 1
+    double enough = most * (1.0 + 1e-9) * samples / aisle_max(length, 1e-9); // 1e-9: more than rounding
+    for (double i = 0.5; i < samples && sum <= enough; i += 1.0) {
         aisle_vec2 p = aisle_vec2_lerp(a, b, i / samples);
-        double clearance = self->space->far_clearance;
-        if (!aisle_space_is_far(self->space, p)) {
-            clearance = aisle_space_gap(self->space, (aisle_pose2){p.x, p.y, theta}, clearance, NULL);
+        double clearance = cap;
+        if (aisle_grid_gap_lower(self->space->grid, p) - vehicle->outer_radius < cap) {
+            clearance = aisle_space_gap(self->space, (aisle_pose2){p.x, p.y, theta}, cap, NULL);
             self->units++;
         }
-        sum += aisle_objective_density(self->objective, clearance, 0.0);
+        sum += aisle_objective_density(self->objective, clearance, 0.0) - 1.0;
     }
     return sum * length / samples;
 }
 
-static double leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
-    if (self->exact) {
-        return exact_leg_cost(self, a, b);
+static uint32_t slot_of(aisle_vec2 a, aisle_vec2 b) {
+    const double key[4] = {a.x, a.y, b.x, b.y};
+    uint64_t hash = 0;
+    for (uint32_t i = 0; i < 4U; i++) {
+        uint64_t bits;
+        memcpy(&bits, &key[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9E3779B97F4A7C15ULL;
+        hash ^= hash >> 29U;
     }
-    return aisle_leg_cost(self->space, self->objective, a, b, &self->units);
+    return (uint32_t)(hash >> 16U) % AISLE_TAUT_KNOWN;
+}
+
+// The cost of the leg if it is at most `most`, else something above that. The same legs are asked for again and again.
+static double leg_cost_within(aisle_taut *self, aisle_vec2 a, aisle_vec2 b, double most) {
+    if (aisle_objective_is_length(self->objective)) {
+        return aisle_vec2_distance(a, b);
+    }
+    aisle_taut_known *known = &self->known[slot_of(a, b)]; // all zero is true too
+    if (known->a.x == a.x && known->a.y == a.y && known->b.x == b.x && known->b.y == b.y) {
+        return known->cost;
+    }
+    double cost = self->exact ? exact_leg_cost(self, a, b, most)
+                              : aisle_leg_cost(self->space, self->objective, a, b, &self->units);
+    if (cost <= most) {
+        *known = (aisle_taut_known){a, b, cost};
+    }
+    return cost;
+}
+
+static double leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b) {
+    return leg_cost_within(self, a, b, (double)INFINITY);
 }
 
 // Length an arc saves at the corner a-b-c.
@@ -160,7 +191,8 @@ static void slide_some(aisle_taut *self, uint32_t i, uint32_t to, uint32_t other
     double before = leg_cost(self, b, self->points[to]) + leg_cost(self, b, self->points[other]);
     for (double t = 0.5; t > 0.1; t *= 0.5) {
         aisle_vec2 p = aisle_vec2_lerp(b, self->points[to], t);
-        double after = leg_cost(self, p, self->points[to]) + leg_cost(self, p, self->points[other]);
+        double after = leg_cost_within(self, p, self->points[to], before);
+        after += after < before ? leg_cost_within(self, p, self->points[other], before - after) : 0.0;
         bool outbound = to < i;
         if (after < before * (1.0 - AISLE_TAUT_GAIN) && may_turn(self, p) &&
             (outbound ? free_between(self, p, self->points[other]) : free_between(self, self->points[other], p))) {
@@ -170,11 +202,11 @@ static void slide_some(aisle_taut *self, uint32_t i, uint32_t to, uint32_t other
     }
 }
 
-// Cost of the legs that points first..last have a part in.
-static double cost_about(aisle_taut *self, uint32_t first, uint32_t last) {
+// Cost of the legs that points first..last have a part in, as leg_cost_within().
+static double cost_about(aisle_taut *self, uint32_t first, uint32_t last, double most) {
     double sum = 0.0;
-    for (uint32_t i = first - 1U; i <= last; i++) {
-        sum += leg_cost(self, self->points[i], self->points[i + 1U]);
+    for (uint32_t i = first - 1U; i <= last && sum <= most; i++) {
+        sum += leg_cost_within(self, self->points[i], self->points[i + 1U], most - sum);
     }
     return sum;
 }
@@ -195,7 +227,7 @@ static bool try_shift(aisle_taut *self, uint32_t first, uint32_t last, aisle_vec
     for (uint32_t i = first; i <= last; i++) {
         self->points[i] = aisle_vec2_add(self->points[i], by);
     }
-    double after = cost_about(self, first, last);
+    double after = cost_about(self, first, last, *cost);
     if (after < *cost * (1.0 - AISLE_TAUT_GAIN) && are_free_about(self, first, last)) {
         *cost = after;
         return true;
@@ -217,7 +249,7 @@ static void shift_across(aisle_taut *self, uint32_t first, uint32_t last) {
         return;
     }
     aisle_vec2 across = aisle_vec2_of(-along.y / length, along.x / length);
-    double cost = cost_about(self, first, last);
+    double cost = cost_about(self, first, last, (double)INFINITY);
     double last_step = self->exact ? SHIFT_LAST : SHIFT_FIELD;
     for (double step = self->exact ? SHIFT_EXACT : SHIFT; step > last_step; step *= 0.5) {
         if (!try_shift(self, first, last, aisle_vec2_scale(across, step), &cost)) {
@@ -308,6 +340,7 @@ static aisle_status next_pass(aisle_taut *self) {
         return AISLE_OK;
     }
     self->exact = true;
+    memset(self->known, 0, sizeof self->known); // by the field
     self->cost = -1.0;
     self->pass = 0;
     return AISLE_BUSY;

@@ -9,7 +9,8 @@
 // obstacle, which is the local optimum there. For other densities slides by 1/2, 1/4, 1/8 of the leg. Ends when a whole
 // pass gains less than AISLE_TAUT_GAIN of the length (2e-4 of another cost), or after AISLE_TAUT_PASSES; then, for other densities, shifts once
 // more by exact gaps, since the field tells the middle of an aisle to half a cell only.
-// Memory: the caller's points. Time: a pass is O(points * sweeps); sliced by point.
+// Memory: the caller's points, and 5 KiB of costs of legs, each asked for several times. Time: a pass is O(points *
+// sweeps); sliced by point.
 #ifndef AISLE_PLAN_TAUT_H
 #define AISLE_PLAN_TAUT_H
 
@@ -18,6 +19,12 @@
 
 #define AISLE_TAUT_PASSES 16U
 #define AISLE_TAUT_GAIN 1e-5
+#define AISLE_TAUT_KNOWN 128U // costs of legs kept, each in the place its ends' bits name
+
+typedef struct aisle_taut_known {
+    aisle_vec2 a, b;
+    double cost; // from a to b
+} aisle_taut_known;
 
 typedef struct aisle_taut {
     const aisle_space *space;
@@ -29,6 +36,7 @@ typedef struct aisle_taut {
     double arc_radius; // m
     double cost;       // of the whole polyline when the pass began
     uint32_t units;    // since the last step
+    aisle_taut_known known[AISLE_TAUT_KNOWN];
 } aisle_taut;
 
 // Begins on points[count], count >= 2, every leg free.
