@@ -28,6 +28,7 @@ from aisle_tools.world import World  # noqa: E402
 
 ALPHA, BETA, WALL = 1.05, 2.0, 0.25  # as in src/plan/paper_swarm.h
 BETA_SHORTEST = 1e-6  # length alone, feasibility first
+WEIGHT = 8.0  # risk_weight of SAFEST, as in src/plan/objective.h
 CREEP = 0.5  # m, creep_clearance of the default vehicle
 KINDS = {"linear": options_t.LINEAR, "spline": options_t.SPLINE}
 PAPER_CONVERGED = {"linear": 25.2801, "spline": 25.8663}
@@ -294,6 +295,9 @@ def print_works(args: argparse.Namespace, out: dict, exact: float) -> None:
     if least is not None:
         checks.append(("exposure 0 or within 2 % of least", safe["exposure"] <= max(1.02 * least["exposure"], 1e-6)))
     checks.append(("length within 10 % of exact", safe["L"] <= 1.1 * exact))
+    if least is not None:
+        own, best = (row["L"] + WEIGHT * row["exposure"] for row in (safe, least))
+        print(f"  SAFEST by its own measure, L + {WEIGHT:g} exposure: {own:.3f}, the grid's way {best:.3f}, ratio {own / best:.3f}")
     print("  SAFEST: " + ", ".join(f"{what}: {'yes' if ok else 'NO'}" for what, ok in checks))
 
 

@@ -71,14 +71,17 @@ def least_exposure(
     nodes = np.column_stack([gx.ravel(), gy.ravel()])
     from_ = int(round((start[1] - oy) / step)) * columns + int(round((start[0] - ox) / step))
     to = int(round((goal[1] - oy) / step)) * columns + int(round((goal[0] - ox) / step))
-    costs = [_edge_costs(obstacles, radius, margin, creep, gx, gy, i * step, j * step) for i, j in MOVES]
+    forwards = {m: _edge_costs(obstacles, radius, margin, creep, gx, gy, m[0] * step, m[1] * step) for m in MOVES if m > (0, 0)}
+    # The way back costs the same; what wraps round the edge is never asked for.
+    costs = [forwards[m] if m in forwards else np.roll(forwards[-m[0], -m[1]], (-m[1], -m[0]), (0, 1)) for m in MOVES]
+    costs = [c.ravel().tolist() for c in costs]
     way = _dijkstra(costs, rows, columns, from_, to)
     return np.vstack([[start], nodes[way][1:-1], [goal]]) if way else np.empty((0, 2))
 
 
 def _edge_costs(
     obstacles: Obstacles, radius: float, margin: float, creep: float, gx: np.ndarray, gy: np.ndarray, dx: float, dy: float
-) -> list[float]:
+) -> np.ndarray:
     """Of this move from every node; infinite where the margin is not kept."""
     total, least = np.zeros(gx.size), np.full(gx.size, math.inf)
     for k, weight in enumerate((0.5, 1.0, 1.0, 0.5)):
@@ -87,7 +90,7 @@ def _edge_costs(
         least = np.minimum(least, gap)
         total += weight / 3.0 * danger(gap, creep)
     size = math.hypot(dx, dy)
-    return np.where(least >= margin - SPECK, size * (total + TIE), math.inf).tolist()
+    return np.where(least >= margin - SPECK, size * (total + TIE), math.inf).reshape(gx.shape)
 
 
 def _dijkstra(costs: list[list[float]], rows: int, columns: int, start: int, goal: int) -> list[int]:

@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""Aisle beside the polyanya crate and OMPL: the same discs, halls and pairs, in the same run, rounds taken in turn.
+
+build/venv/bin/python tools/bench/peers.py [folder] [--only NAME] [--repeat 200] [--rounds 3] [--no-ompl] [--json FILE]
+
+Aisle's time is a whole cold query: check, search, pieces, proof, encoding, and the reply's decoding. polyanya's is the
+search alone on a mesh of obstacles grown beforehand (arcs as polygons around them), which took `mesh` ms. OMPL's is the
+time until planner and simplifier together first reach aisle's own length ratio (its motion test is exact), the best of
+its planners, or a lower bound where none did so within --cap seconds. Ratios are to the exact optimum (optimum.json).
+The peers are optional: tools/bench/peers/polyanya needs cargo, tools/bench/peers/ompl cmake and Debian's libompl-dev.
+Footprints are taken as the disc around them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import offline
+import shapely
+from aisle_tools import query, vehicle
+from aisle_tools.scenario import Scenario, read_scenario
+from shapely.geometry import Polygon, box
+
+PEERS = Path(__file__).resolve().parent / "peers"
+QUARTER = 12  # segments of a quarter arc of a grown obstacle
+TARGET_POLYANYA, TARGET_OMPL = 3.0, 50.0
+
+
+def grown(obstacles: list[Polygon], radius: float) -> list[Polygon]:
+    """The obstacles grown by the radius, united; arcs as polygons that lie around them."""
+    around = radius / math.cos(math.pi / (4 * QUARTER))
+    united = shapely.union_all([p.buffer(around, quad_segs=QUARTER) for p in obstacles])
+    parts = list(united.geoms) if united.geom_type == "MultiPolygon" else [united]
+    return [p for p in parts if not p.is_empty]
+
+
+def free_space(bounds: tuple[float, ...], obstacles: list[Polygon], radius: float, start: tuple[float, ...]) -> Polygon:
+    """What a disc's centre may reach from start, as one polygon with holes."""
+    free = box(*bounds).difference(shapely.union_all(grown(obstacles, radius)))
+    parts = list(free.geoms) if free.geom_type == "MultiPolygon" else [free]
+    place = shapely.Point(start[0], start[1])
+    return min(parts, key=lambda p: p.distance(place))
+
+
+def stops_of(scenario: Scenario) -> list[tuple[float, ...]]:
+    return [scenario.start, *scenario.goals]
+
+
+def scene_of(raw: dict, scenario: Scenario, repeat: int) -> dict:
+    free = free_space(tuple(raw["bounds"]), [Polygon(o) for o in raw["obstacles"]], raw["robot"]["radius"] or 1e-3,
+                      scenario.start)
+    stops = stops_of(scenario)
+    return {
+        "outer": [list(c) for c in free.exterior.coords[:-1]],
+        "holes": [[list(c) for c in ring.coords[:-1]] for ring in free.interiors],
+        "pairs": [[*a[:2], *b[:2]] for a, b in zip(stops, stops[1:])],
+        "repeat": repeat,
+    }
+
+
+def call(words: list, text: str) -> dict:
+    done = subprocess.run([str(w) for w in words], input=text, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"{words[0]}: exit {done.returncode}\n{done.stderr[-2000:]}")
+    return json.loads(done.stdout)
+
+
+def build_polyanya() -> Path | None:
+    if shutil.which("cargo") is None:
+        print("polyanya: no cargo here (rustup, or Debian's cargo); left out")
+        return None
+    target = offline.ROOT / "build" / "peers" / "polyanya"
+    done = subprocess.run(["cargo", "build", "--release", "--locked", "-q", "--target-dir", target], check=False,
+                          cwd=PEERS / "polyanya")
+    return target / "release" / "polyanya-bench" if done.returncode == 0 else None
+
+
+def build_ompl() -> Path | None:
+    target = offline.ROOT / "build" / "peers" / "ompl"
+    steps = [["cmake", "-S", PEERS / "ompl", "-B", target, "-DCMAKE_BUILD_TYPE=Release"], ["cmake", "--build", target]]
+    for words in steps:
+        if subprocess.run([str(w) for w in words], capture_output=True, check=False).returncode != 0:
+            print("OMPL: does not build here (apt-get install libompl-dev); left out")
+            return None
+    return target / "ompl-bench"
+
+
+class AisleLog:
+    """A scenario's queries in a log, for aisle-replay --bench."""
+
+    def __init__(self, args: argparse.Namespace, scenario: Scenario, radius: float, folder: Path) -> None:
+        self.args, self.log, self.json = args, folder / f"{scenario.name}.log", folder / f"{scenario.name}.json"
+        stops = stops_of(scenario)
+        legs = [query.Leg(str(i + 1), a, [b]) for i, (a, b) in enumerate(zip(stops, stops[1:]))]
+        offline.write_log(args, self.log, scenario.world, vehicle.make({"radius": radius, "margin": -1.0}), legs)
+        out = folder / "out.log"
+        offline.run([args.replay, self.log, "--out", out])
+        self.lengths = {r.query_id: r.length for r in offline.Recording(out, offline.PREFIX).replies}
+
+    def run(self) -> list[dict]:
+        offline.run([self.args.replay, self.log, "--bench", "--repeat", self.args.repeat, "--json", self.json])
+        rows = json.loads(self.json.read_text())["queries"]
+        return [{"ms": r["ms_median"], "p99": r["ms_p99"], "length": self.lengths[r["query_id"]]} for r in rows]
+
+
+def middle(values: list[float]) -> float:
+    return offline.median(values)
+
+
+def merged(rounds: list[list[dict]]) -> list[dict]:
+    """Leg by leg the median over the rounds."""
+    return [{**legs[0], "ms": middle([r["ms"] for r in legs]), "p99": middle([r["p99"] for r in legs])}
+            for legs in zip(*rounds)]
+
+
+def compare(args: argparse.Namespace, path: Path, programs: dict, folder: Path, best: list[dict]) -> list[dict]:
+    raw, scenario = json.loads(path.read_text()), read_scenario(path, -1.0)
+    aisle = AisleLog(args, scenario, raw["robot"]["radius"] or 1e-3, folder)
+    scene = scene_of(raw, scenario, args.repeat)
+    ours, theirs = [], []
+    for _ in range(args.rounds):  # in turn: what the machine does meanwhile meets both
+        ours.append(aisle.run())
+        if programs["polyanya"] is not None:
+            theirs.append(call([programs["polyanya"]], json.dumps(scene)))
+    rows = []
+    for i, row in enumerate(merged(ours)):
+        row.update(scenario=path.stem, leg=i + 1, ratio=row["length"] / best[i]["lower"])
+        if theirs:
+            legs = [t["pairs"][i] for t in theirs]
+            row["polyanya"] = {"ms": middle([t["ms"] for t in legs]), "p99": middle([t["p99"] for t in legs]),
+                               "mesh_ms": middle([t["mesh_ms"] for t in theirs]),
+                               "ratio": legs[0]["length"] / best[i]["lower"] if legs[0]["length"] else math.nan}
+            row["factor"] = row["ms"] / row["polyanya"]["ms"]
+        if programs["ompl"] is not None:
+            row["ompl"] = ask_ompl(args, raw, scene["pairs"][i], best[i]["lower"] * max(row["ratio"], 1.0) * (1 + 1e-6),
+                                   programs["ompl"])
+        rows.append(row)
+    return rows
+
+
+def ask_ompl(args: argparse.Namespace, raw: dict, pair: list[float], length: float, program: Path) -> dict:
+    numbers = [*raw["bounds"], raw["robot"]["radius"] or 1e-3, *pair, length, args.cap, len(raw["obstacles"])]
+    for o in raw["obstacles"]:
+        numbers += [len(o), *(v for p in o for v in p)]
+    return call([program], " ".join(repr(float(n)) for n in numbers))
+
+
+def show(row: dict) -> str:
+    text = f"{row['scenario']:<16} {row['leg']:>3} {row['ms']:>8.3f} {row['p99']:>8.3f} {row['ratio']:>8.5f}"
+    if "polyanya" in row:
+        p = row["polyanya"]
+        text += f" {p['ms']:>9.3f} {p['p99']:>8.3f} {p['ratio']:>8.5f} {p['mesh_ms']:>8.2f} {row['factor']:>7.2f}"
+    if "ompl" in row:
+        o = row["ompl"]
+        reached = o["ms"] is not None
+        ms = o["ms"] if reached else 1e3 * o["cap"]
+        text += f" {'' if reached else '>':>2}{ms:>8.1f} {ms / row['ms']:>8.0f} {o['planner'] or '-':<12} {o['best']:.4f}"
+    return text
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    offline.add_options(parser, offline.ROOT / "tests" / "data" / "scenarios")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--no-ompl", action="store_true")
+    parser.add_argument("--cap", type=float, default=2.0, help="s for each OMPL planner and leg")
+    parser.set_defaults(objective="shortest", repeat=200)
+    args = parser.parse_args()
+    programs = {"polyanya": build_polyanya(), "ompl": None if args.no_ompl else build_ompl()}
+    optima = json.loads((args.folder / "optimum.json").read_text())
+    print("disc robots, margin none, SHORTEST; ms: median of the rounds' medians")
+    print(f"{'scenario':<16} {'leg':>3} {'aisle ms':>8} {'p99':>8} {'ratio':>8} {'polyanya':>9} {'p99':>8} {'ratio':>8} "
+          f"{'mesh ms':>8} {'factor':>7} {'OMPL ms':>10} {'factor':>8} planner, best ratio")
+    rows: list[dict] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, optimum in sorted(optima.items()):
+            if args.only and name not in args.only:
+                continue
+            for row in compare(args, args.folder / f"{name}.json", programs, Path(folder), optimum["legs"]):
+                rows.append(row)
+                print(show(row), flush=True)
+    summary(rows)
+    if args.json is not None:
+        args.json.write_text(json.dumps(rows, indent=1))
+    return 0
+
+
+def summary(rows: list[dict]) -> None:
+    factors = [r["factor"] for r in rows if "factor" in r]
+    longer = [r for r in rows if "polyanya" in r and r["ratio"] > r["polyanya"]["ratio"] * (1 + 1e-5)]
+    if factors:
+        print(f"aisle / polyanya: median {middle(factors):.2f}, worst {max(factors):.2f} (target {TARGET_POLYANYA:g}); "
+              f"aisle longer on {len(longer)} of {len(factors)} legs")
+    ahead = [(r["ompl"]["ms"] or 1e3 * r["ompl"]["cap"]) / r["ms"] for r in rows if "ompl" in r]
+    if ahead:
+        print(f"OMPL / aisle: median at least {middle(ahead):.0f}, least {min(ahead):.0f} (target {TARGET_OMPL:g})")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
