@@ -96,7 +96,7 @@ class AisleLog:
     """A scenario's queries in a log, for aisle-replay --bench."""
 
     def __init__(self, args: argparse.Namespace, scenario: Scenario, radius: float, folder: Path) -> None:
-        self.args, self.log, self.json = args, folder / f"{scenario.name}.log", folder / f"{scenario.name}.json"
+        self.args, self.log, self.json = args, folder / f"{scenario.world.name}.log", folder / f"{scenario.world.name}.json"
         stops = stops_of(scenario)
         legs = [query.Leg(str(i + 1), a, [b]) for i, (a, b) in enumerate(zip(stops, stops[1:]))]
         offline.write_log(args, self.log, scenario.world, vehicle.make({"radius": radius, "margin": -1.0}), legs)
