@@ -4,8 +4,9 @@
 
 #include <math.h>
 
-#define CREEP_SPARE 2e-3      // m, what is told of a clearance may be lower than the truth by less
-#define RISK_STEP 1e-4        // risks nearer to each other than this are alike
+#define SHORT_SLACK 2e-4 // m, what a disc's exact way keeps beyond the margin, for the proof: nobody searches about it
+#define CREEP_SPARE 2e-3 // m, what is told of a clearance may be lower than the truth by less
+#define RISK_STEP 1e-4   // risks nearer to each other than this are alike
 #define LENGTH_SPAN 1048576.0 // m, no path is so long
 
 // What each objective tries, in order. The same candidates for fastest and least energy, so that neither can be beaten
@@ -48,7 +49,8 @@ static void begin_way(aisle_route *self) {
     options.objective = self->way->objective;
     bool known = aisle_objective_of(&options, vehicle, &self->objective);
     AISLE_ASSERT(known);
-    double keep = vehicle->margin + AISLE_SPACE_SLACK;
+    bool is_short = self->way->kind == AISLE_WAY_SHORT && aisle_vehicle_is_disc(vehicle);
+    double keep = vehicle->margin + (is_short ? SHORT_SLACK : AISLE_SPACE_SLACK);
     bool is_clear = self->way->kind == AISLE_WAY_CLEAR;
     self->room = is_clear ? aisle_max(vehicle->creep_clearance + CREEP_SPARE, keep) : keep;
     if (self->way->kind == AISLE_WAY_PAPER) {
