@@ -269,7 +269,10 @@ aisle_status aisle_tangent_see(aisle_tangent *self, uint32_t from) {
         v.last_at = aisle_contact(v.circle, v.last);
     }
     reset_depth(&v);
-    look_around(&v);
+    bool is_straight = v.all_round && aisle_tangent_line_free(self, self->radius, v.circle.centre, self->goal);
+    if (!is_straight) { // else nothing can be shorter than the line to the goal
+        look_around(&v);
+    }
     look_at_goal(&v);
     return v.st;
 }
