@@ -31,14 +31,25 @@ def main() -> int:
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         logs = [write_layout(Path(folder) / name, read_world(name)) for name in args.only or NAMES]
-        done = subprocess.run([args.program, *logs], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"{args.program}: exit {done.returncode}\n{done.stderr}")
-    loads = [line for line in done.stdout.splitlines() if line.startswith("load ")]
+        loads = load_lines(args.program, logs)
     ratios = [float(line.split("ratio ")[1].split(";")[0]) for line in loads]
     print("\n".join(loads))
     print(f"worst ratio {max(ratios):.2f} (target {LIMIT:g})")
     return 0 if max(ratios) <= LIMIT else 1
+
+
+def load_lines(program: Path, logs: list[Path]) -> list[str]:
+    """Of bench-parts' own layout and of each log."""
+    done = subprocess.run([program, *logs], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{program}: exit {done.returncode}\n{done.stderr}")
+    return [line for line in done.stdout.splitlines() if line.startswith("load ")]
+
+
+def load_ms(program: Path, logs: list[Path]) -> list[float]:
+    """Of each log's layout."""
+    lines = load_lines(program, logs)[1:]  # the first is its own
+    return [float(line.split(" ms, ")[0].split()[-1]) for line in lines]
 
 
 def read_world(name: str) -> World:

@@ -50,13 +50,12 @@ def add_options(parser: argparse.ArgumentParser, folder: Path) -> None:
 def answers(args: argparse.Namespace, world: World, msg: vehicle_t, legs: list[query.Leg]) -> list[Answer]:
     """One per leg, in order."""
     with tempfile.TemporaryDirectory() as folder:
-        log, out, ms = (Path(folder) / n for n in ("in.log", "out.log", "ms.json"))
+        log, out = (Path(folder) / n for n in ("in.log", "out.log"))
         write_log(args, log, world, msg, legs)
         config = ["--config", str(args.config)] if args.config is not None else []
         run([args.replay, log, "--out", out, *config])
-        run([args.replay, log, "--bench", "--repeat", args.repeat, "--json", ms, *config])
         recording = Recording(out, PREFIX)
-        times = {q["query_id"]: q["ms_median"] for q in json.loads(ms.read_text())["queries"]}
+        times = {q["query_id"]: q["ms_median"] for q in timed(args.replay, log, args.repeat, args.config)}
     replies = {r.query_id: r for r in recording.replies}
     obstacles = None if args.no_check else Obstacles(world)
     made = []
@@ -80,6 +79,15 @@ def write_log(args: argparse.Namespace, path: Path, world: World, msg: vehicle_t
     for i, leg in enumerate(legs):
         log.publish("QUERY", query.make_query(leg, i + 1, 1, options, False))
     log.close()
+
+
+def timed(replay: Path, log: Path, repeat: int, config: Path | None = None) -> list[dict]:
+    """The queries of a log as aisle-replay --bench tells them: status, work_units, ms_median, ms_p99, ms_max."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "ms.json"
+        more = ["--config", config] if config is not None else []
+        run([replay, log, "--bench", "--repeat", repeat, "--json", out, *more])
+        return json.loads(out.read_text())["queries"]
 
 
 def run(words: list) -> None:

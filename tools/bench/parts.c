@@ -18,7 +18,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { ROUNDS = 7, SIDE = 2048, BLOCK = 96 << 20 };
+enum { ROUNDS = 7, SIDE = 2048, CELLS = 1 << 24, BLOCK = 384 << 20 };
 
 static aisle_layout layout;
 static aisle_layout_msg part;
@@ -289,8 +289,8 @@ int main(int argc, char **argv) {
     if (posix_memalign(&block, AISLE_ARENA_ALIGN, BLOCK) != 0) {
         return 1;
     }
-    occupied = malloc((size_t)SIDE * SIDE * sizeof *occupied);
-    bare = malloc((size_t)SIDE * SIDE * sizeof *bare);
+    occupied = malloc((size_t)CELLS * sizeof *occupied);
+    bare = malloc((size_t)CELLS * sizeof *bare);
     at = malloc((AISLE_GRID_SIDE_MAX + 2U) * sizeof *at);
     from_col = malloc((AISLE_GRID_SIDE_MAX + 2U) * sizeof *from_col);
     if (occupied == NULL || bare == NULL || at == NULL || from_col == NULL) {
@@ -298,9 +298,9 @@ int main(int argc, char **argv) {
     }
     aisle_arena arena = aisle_arena_over(block, BLOCK);
     const aisle_limits limits = {
-        .cells = SIDE * SIDE, .polygons = 4096, .vertices = 32768, .open_nodes = 131072, .requests = 1};
+        .cells = CELLS, .polygons = 4096, .vertices = 32768, .open_nodes = 131072, .requests = 1};
     aisle_layout_carve(&layout, &arena, &limits);
-    aisle_astar_carve(&search, &arena, limits.cells, limits.open_nodes);
+    aisle_astar_carve(&search, &arena, SIDE * SIDE, limits.open_nodes);
     make_shelves();
     print_loads(argc - 1, argv + 1);
     send_shelves();
