@@ -1,22 +1,28 @@
 // route.h - one request from start to proved path or reason: the AUTO pipeline. Level 4.
 //
-// Stages: CHECK start and goals exactly - per leg SEED (grid search, turning disc first, the exact body along the
-// motion if that finds nothing) and TAUT - BUILD and VERIFY the seed path - per leg SWARM - BUILD and VERIFY the better
-// legs - END. NEAREST instead, when a stop is occupied (nearest.h); WHY, when no seed is found, and OPENING after it if
-// there is no way for certain (opening.h). The seed's proved path is ready (AISLE_PARTIAL) before the swarm
-// begins; the final one is never worse by the objective's own measure, else the seed's path stays. Planner by name:
-// AUTO keeps the better of both; ASTAR ends with the seed path; PSO takes the swarm's path wherever it is proved.
-// The tangent search's proof that there is no way for the disc inside the footprint goes straight to WHY, whose grid is
-// a second opinion: where it sees a doubt the dear attempts are made all the same.
-// PSO with objective PAPER is the paper's own method alone: CHECK, per leg its swarm (PAPER), BUILD, VERIFY, END; its
-// path or a refusal (BUDGET: it found none, which proves nothing), never a seed's path.
+// CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move), then one way after the other, as
+// route_ways.c lists them for the objective; the best proved path by the objective's own measure is the answer:
+//     SHORTEST   length                            SHORT
+//     SAFEST     risk, to 1e-4, then length        SHORT, CLEAR; long bodies also the two GRID ways below
+//     FASTEST    duration                          SHORT, CLEAR, GRID for duration, GRID for energy
+//     LEAST_ENERGY  energy                         the same ones
+// A way: per leg TANGENT (tangent.h; the first way's search also gives the bound) and where that is not the way's kind or
+// finds none SEED (seed.h) and TAUT; BUILD, VERIFY; per leg SWARM where it may gain something, BUILD, VERIFY. A later way
+// that fails is given up; an answer is told early (AISLE_PARTIAL, once) when what follows takes long.
+// Planner by name: ASTAR leaves the swarm out; PSO is the objective's GRID way alone and takes the swarm's path wherever
+// it is proved; PSO with objective PAPER is the paper's own swarm (PAPER) alone, its path or a refusal (BUDGET: it found
+// none, which proves nothing).
+// No way at all: WHY, and OPENING after it if that is certain (opening.h). The tangent search's proof for the disc inside
+// the footprint goes straight there; the grid is a second opinion: where it sees a doubt the dear attempts are made all
+// the same.
 // Attempts at a seed, until one finds a way: the turning disc, with AISLE_ROUTE_STRIDE between search cells, then with
-// every cell. Then the proof of why.h is asked: no way for the disc the footprint holds, no further search. Then discs
-// try every cell at its roomiest point (slits narrower than a cell), other bodies their exact footprint along the
-// motion, with a stride and without. For pure length the disc starts with every cell: a narrow passage is worth more.
+// every cell. In the first way the proof of why.h is asked then: no way for the disc the footprint holds, no further
+// search. Then discs try every cell at its roomiest point (in later ways: their shortest way is the seed), other bodies
+// their exact footprint along the motion, with a stride and without. For pure length the disc starts with every cell.
 // Budget: work units of everything together; spent before a first proof: cause BUDGET, or the cause if one is certain
-// by then; spent later: the first path is the answer. If the verifier turns the seed path down it is built again with
-// stops in all corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
+// by then; spent later: the best so far is the answer. If the verifier turns a long body's tight ways down they are
+// planned again for the disc in which it turns; if it turns the seed path down it is built again with stops in all
+// corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
 // not proved) or VERIFY_FAILED.
 // Memory: from the arena, about 0.6 MiB and the searches' cells. Time: at most the budget plus one indivisible piece
 // of each stage.
