@@ -107,6 +107,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
                                        aisle_route_place(&self->request.goals[self->leg]));
     case AISLE_ROUTE_OPENING:
         return aisle_route_step_opening(self, units);
+    case AISLE_ROUTE_SIDES:
+        return aisle_route_step_sides(self, units);
     default:
         return AISLE_OK;
     }

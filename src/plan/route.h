@@ -94,6 +94,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_NEXT, // the way under way is done with
     AISLE_ROUTE_DROP, // or leads nowhere
     AISLE_ROUTE_OPENING,
+    AISLE_ROUTE_SIDES, // the same by the tangent search, for a gap too little too narrow for the grid
     AISLE_ROUTE_END
 } aisle_route_stage;
 
@@ -129,6 +130,7 @@ typedef struct aisle_route {
     int32_t revision;        // of the first path told
     aisle_route_stage stage;
     bool stops;                          // build with a stop in every corner
+    uint32_t side;                       // of the gap, left out under way
     bool no_way;                         // proved for the leg under way, exactly, by the tangent search
     bool is_wide;                        // tight ways (route_tangent.c) failed
     bool announced;                      // AISLE_PARTIAL was told

@@ -88,6 +88,7 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 void aisle_route_begin_why(aisle_route *self, uint32_t stride);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
 // OPENING: what would have to go; the cause is told already.
+aisle_status aisle_route_step_sides(aisle_route *self, uint32_t units); // SIDES: the same
 aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units);
 
 // route_paper.c: the paper's own swarm in place of everything before BUILD.

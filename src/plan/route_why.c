@@ -32,6 +32,59 @@ static aisle_status begin_opening(aisle_route *self) {
     return AISLE_BUSY;
 }
 
+static aisle_vec2 centre_of(const aisle_convex *shape) {
+    aisle_vec2 sum = {0.0, 0.0};
+    for (uint32_t i = 0; i < shape->n; i++) {
+        sum = aisle_vec2_add(sum, aisle_vec2_scale(shape->v[i], 1.0 / shape->n));
+    }
+    return sum;
+}
+
+static void tell_member(aisle_route *self, const aisle_zone *zone) {
+    aisle_convex shape = aisle_layout_zone_shape(self->layout, zone);
+    aisle_route_tell(self, centre_of(&shape), zone->id, AISLE_WAYPOINT_GOAL);
+}
+
+// Leaves out the gap's sides from n on, one after the other. Polygons alone can go.
+static aisle_status try_side(aisle_route *self, uint32_t n) {
+    const aisle_why *why = &self->why;
+    for (self->side = n; self->side < why->gap.sides; self->side++) {
+        if (why->gap.id[self->side] > 0) {
+            const aisle_layout_without without = {.id = {why->gap.id[self->side]}, .count = 1};
+            aisle_tangent_start(&self->tangent, self->layout, why->reach, why->start, why->goal);
+            aisle_tangent_leave_out(&self->tangent, &without);
+            self->stage = AISLE_ROUTE_SIDES;
+            return AISLE_BUSY;
+        }
+    }
+    self->stage = AISLE_ROUTE_END;
+    return AISLE_OK;
+}
+
+// The grid sees a way where there is none, so it cannot tell what would open one: each side of the gap is tried exactly.
+static aisle_status begin_sides(aisle_route *self) {
+    (void)refuse_too_narrow(self);
+    return try_side(self, 0);
+}
+
+aisle_status aisle_route_step_sides(aisle_route *self, uint32_t units) {
+    aisle_status st = aisle_tangent_step(&self->tangent, units, &self->spent);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    if (st != AISLE_OK) {
+        return try_side(self, self->side + 1U);
+    }
+    for (uint32_t i = 0; i < aisle_layout_zone_count(self->layout); i++) {
+        const aisle_zone *zone = aisle_layout_zone(self->layout, i);
+        if (zone->id == self->why.gap.id[self->side]) {
+            tell_member(self, zone);
+        }
+    }
+    self->stage = AISLE_ROUTE_END;
+    return AISLE_OK;
+}
+
 static aisle_status end_why(aisle_route *self) {
     const aisle_why *why = &self->why;
     if (why->proved) {
@@ -39,7 +92,7 @@ static aisle_status end_why(aisle_route *self) {
     }
     if (self->no_way) { // too little is wanting for the grid to see it
         bool narrow = why->connected && why->gap.width < 2.0 * why->reach;
-        return narrow ? refuse_too_narrow(self) : refuse_no_path(self);
+        return narrow ? begin_sides(self) : refuse_no_path(self);
     }
     int16_t cause =
         aisle_vehicle_is_disc(self->vehicle) || !why->connected ? AISLE_STATUS_BUDGET : AISLE_STATUS_KINEMATIC;
@@ -75,14 +128,6 @@ aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {
     return aisle_route_refuse(self, AISLE_STATUS_LIMIT, 0, (double)self->seed.search.open_capacity);
 }
 
-static aisle_vec2 centre_of(const aisle_convex *shape) {
-    aisle_vec2 sum = {0.0, 0.0};
-    for (uint32_t i = 0; i < shape->n; i++) {
-        sum = aisle_vec2_add(sum, aisle_vec2_scale(shape->v[i], 1.0 / shape->n));
-    }
-    return sum;
-}
-
 aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units) {
     const aisle_opening *opening = &self->opening;
     aisle_status st = aisle_opening_step(&self->opening, units, &self->spent);
@@ -91,9 +136,7 @@ aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units) {
     }
     const uint32_t zones[AISLE_LAYOUT_WITHOUT_MAX] = {opening->first, opening->second};
     for (uint32_t i = 0; st == AISLE_OK && i < opening->without.count; i++) {
-        const aisle_zone *zone = aisle_layout_zone(self->layout, zones[i]);
-        aisle_convex shape = aisle_layout_zone_shape(self->layout, zone);
-        aisle_route_tell(self, centre_of(&shape), zone->id, AISLE_WAYPOINT_GOAL);
+        tell_member(self, aisle_layout_zone(self->layout, zones[i]));
     }
     self->stage = AISLE_ROUTE_END;
     return AISLE_OK;

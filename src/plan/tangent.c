@@ -77,7 +77,7 @@ static bool may_stand(const aisle_tangent *self, aisle_vec2 p) {
 
 // Does the distance field know of contact there? Most corners of a scan lie within reach of others.
 static bool is_blocked(const aisle_tangent *self, aisle_vec2 p) {
-    return aisle_grid_gap_upper(aisle_layout_grid(self->layout), p) < self->radius;
+    return self->without.count == 0U && aisle_grid_gap_upper(aisle_layout_grid(self->layout), p) < self->radius;
 }
 
 static void add(aisle_tangent *self, const aisle_tangent_node *node, double f) {
@@ -126,6 +126,7 @@ void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double
                          aisle_vec2 goal) {
     AISLE_ASSERT(radius >= 0.0 && aisle_layout_has_blocks(layout));
     self->layout = layout;
+    self->without.count = 0;
     self->radius = radius;
     self->allowed = aisle_aabb_grow(aisle_layout_bounds(layout), -radius);
     self->goal = goal;
@@ -144,6 +145,21 @@ void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double
                                    .next = AISLE_TANGENT_NONE};
         add(self, &node, self->bound);
     }
+}
+
+void aisle_tangent_leave_out(aisle_tangent *self, const aisle_layout_without *without) {
+    AISLE_ASSERT(self->expansions == 0U);
+    self->without = *without;
+}
+
+bool aisle_tangent_counts(const aisle_tangent *self, uint32_t index, const aisle_layout_block *block) {
+    bool is_zone = index < aisle_layout_zone_count(self->layout);
+    for (uint32_t i = 0; is_zone && i < self->without.count; i++) {
+        if (aisle_layout_zone(self->layout, index)->id == self->without.id[i]) {
+            return false;
+        }
+    }
+    return block->is_obstacle;
 }
 
 // The line that leads to a node, and the arc before it.

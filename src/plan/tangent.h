@@ -44,8 +44,9 @@ typedef struct aisle_tangent_node { // arrival at a circle
 
 typedef struct aisle_tangent {
     const aisle_layout *layout;
-    double radius;      // m
-    aisle_aabb allowed; // where the centre may be
+    aisle_layout_without without; // polygons that do not count
+    double radius;                // m
+    aisle_aabb allowed;           // where the centre may be
     aisle_vec2 goal;
     aisle_tangent_node *nodes; // [capacity]
     aisle_heap open;           // of nodes, by f
@@ -66,6 +67,9 @@ void aisle_tangent_carve(aisle_tangent *self, aisle_arena *arena, const aisle_li
 // way.
 void aisle_tangent_start(aisle_tangent *self, const aisle_layout *layout, double radius, aisle_vec2 start,
                          aisle_vec2 goal);
+
+// Between start() and the first step(): as if these polygons were not there.
+void aisle_tangent_leave_out(aisle_tangent *self, const aisle_layout_without *without);
 
 // AISLE_BUSY; AISLE_OK: found, bound is its length; AISLE_PARTIAL: proved, there is no way; AISLE_ERR_CAPACITY: out of
 // nodes, bound still holds.

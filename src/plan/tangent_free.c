@@ -49,7 +49,7 @@ static bool is_block_clear(aisle_tangent *self, const straight *way, uint32_t in
     aisle_layout_block block;
     aisle_layout_block_at(self->layout, index, &block);
     self->quarters += 3U;
-    return !block.is_obstacle || is_clear_of(way, &block.shape);
+    return !aisle_tangent_counts(self, index, &block) || is_clear_of(way, &block.shape);
 }
 
 // Every block of a bucket that was not looked at under this stamp.
@@ -152,7 +152,8 @@ static bool is_arc_clear_in(aisle_tangent *self, double radius, const bend *arc,
         aisle_layout_block block;
         aisle_layout_block_at(self->layout, index, &block);
         self->quarters += 4U;
-        if (block.is_obstacle && aisle_convex_point_gap(&block.shape, arc->about.centre) < 2.0 * radius &&
+        if (aisle_tangent_counts(self, index, &block) &&
+            aisle_convex_point_gap(&block.shape, arc->about.centre) < 2.0 * radius &&
             !is_arc_clear_of(arc, radius, &block.shape)) {
             return false;
         }

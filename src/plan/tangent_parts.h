@@ -59,6 +59,9 @@ double aisle_arc_length(aisle_circle about, aisle_vec2 from, aisle_vec2 to);
 // Stamps what is visited once in the walk that follows.
 uint32_t aisle_tangent_stamp(aisle_tangent *self);
 
+// Does the block stand in the way: an obstacle that is not left out?
+bool aisle_tangent_counts(const aisle_tangent *self, uint32_t index, const aisle_layout_block *block);
+
 // Pushes the node of an untested line from the node under way.
 aisle_status aisle_tangent_push(aisle_tangent *self, uint32_t from, const aisle_tangent_node *to, double length);
 

@@ -173,7 +173,7 @@ static void look_at_block(view *v, uint32_t index) {
     }
     aisle_layout_block block;
     aisle_layout_block_at(v->self->layout, index, &block);
-    if (!block.is_obstacle) {
+    if (!aisle_tangent_counts(v->self, index, &block)) {
         return;
     }
     sight s = {.rights = 0};

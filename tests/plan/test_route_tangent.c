@@ -167,6 +167,25 @@ static void test_a_tight_way_that_cannot_be_entered_gives_way_to_one_the_body_ca
     }
 }
 
+static void test_a_door_too_narrow_by_a_hair_is_proved_and_told_with_what_would_open_it(void) {
+    hall_disc(0.4, 0.05F);
+    hall_begin(8.0, 5.0);
+    hall_add(4.0, -1.0, 4.2, 2.0);
+    hall_add(4.0, 2.8999, 4.2, 6.0); // 0.1 mm too narrow for 0.9 m
+    open_hall();
+    ask(AISLE_OPTIONS_SHORTEST, 1.0, 2.5, 7.0, 2.5);
+    TEST_ASSERT_FALSE(plan(1000));
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_TOO_NARROW, route.cause.cause);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.8999, (double)route.cause.value);
+    TEST_ASSERT_EQUAL_UINT32(4, route.told_count); // the place, both sides, the one that may go
+    TEST_ASSERT_EQUAL_INT32(3, route.told[1].goal_id + route.told[2].goal_id);
+    TEST_ASSERT_EQUAL_INT16(AISLE_WAYPOINT_GOAL, route.told[3].flags);
+    TEST_ASSERT_TRUE(route.told[3].goal_id == 1 || route.told[3].goal_id == 2);
+    hall_boxes[1].y0 = 2.9021; // and 2.1 mm wider than that it is a way
+    open_hall();
+    TEST_ASSERT_TRUE(plan(1000));
+}
+
 static void test_any_slicing_gives_the_same_bytes(void) {
     static uint8_t whole[AISLE_ROUTE_BYTES];
     hall_rectangle(1.0, 0.6, 0.05F);
@@ -192,6 +211,7 @@ int main(void) {
     RUN_TEST(test_a_long_bodys_path_lies_between_the_optima_of_its_inner_and_its_outer_disc);
     RUN_TEST(test_a_body_drives_round_a_bend_in_which_it_cannot_turn);
     RUN_TEST(test_a_tight_way_that_cannot_be_entered_gives_way_to_one_the_body_can_turn_on);
+    RUN_TEST(test_a_door_too_narrow_by_a_hair_is_proved_and_told_with_what_would_open_it);
     RUN_TEST(test_any_slicing_gives_the_same_bytes);
     return UNITY_END();
 }

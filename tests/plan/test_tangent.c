@@ -214,6 +214,42 @@ static void test_a_slit_a_hair_wider_than_the_disc_is_found_and_one_a_hair_narro
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run(0.3 + 1e-8, aisle_vec2_of(1, 1), aisle_vec2_of(9, 1)));
 }
 
+// Every polygon left out in turn: the answer is the oracle's for the scene without it.
+static void test_what_is_left_out_is_as_if_it_were_not_there(void) {
+    int other = 0;
+    for (uint32_t seed = 0; seed < 10U; seed++) {
+        aisle_rng rng = aisle_rng_seed(7700U + seed);
+        fix_random_scene(&scene, &rng, 40, 1);
+        load();
+        aisle_vec2 start, goal;
+        do {
+            start = anywhere(&rng);
+            goal = anywhere(&rng);
+        } while (run(0.12, start, goal) != AISLE_OK);
+        double whole = tangent.bound;
+        for (uint32_t i = 0; i < 40U; i++) {
+            const aisle_layout_without without = {.id = {scene.polygons[i].id}, .count = 1};
+            int8_t kind = scene.polygons[i].kind;
+            scene.polygons[i].kind = AISLE_POLYGON_PENALTY; // no obstacle to the oracle
+            optimum_world *world = oracle_of(0.12);
+            scene.polygons[i].kind = kind;
+            optimum_path path =
+                optimum_shortest(world, (optimum_point){start.x, start.y}, (optimum_point){goal.x, goal.y}, INFINITY);
+            uint32_t spent = 0;
+            aisle_tangent_start(&tangent, &fix_layout, 0.12, start, goal);
+            aisle_tangent_leave_out(&tangent, &without);
+            aisle_status st = aisle_tangent_step(&tangent, UINT32_MAX, &spent);
+            bool same = st == AISLE_OK ? fabs(tangent.bound - path.length) < AGREE : isinf(path.length);
+            // Stops on what is left out are still occupied.
+            TEST_ASSERT_TRUE(same || (st == AISLE_PARTIAL && tangent.expansions == 0U));
+            other += st == AISLE_OK && fabs(tangent.bound - whole) > 1e-3 ? 1 : 0;
+            optimum_path_free(&path);
+            optimum_free(world);
+        }
+    }
+    TEST_ASSERT_TRUE(other > 5);
+}
+
 static void test_any_slicing_gives_the_same_way_and_bound(void) {
     aisle_rng rng = aisle_rng_seed(7400U);
     fix_random_scene(&scene, &rng, 60, 1);
@@ -352,6 +388,7 @@ int main(void) {
     RUN_TEST(test_polygons_on_a_scan_count_together);
     RUN_TEST(test_aligned_touching_and_repeated_boxes_give_the_oracles_length);
     RUN_TEST(test_a_slit_a_hair_wider_than_the_disc_is_found_and_one_a_hair_narrower_is_a_proof);
+    RUN_TEST(test_what_is_left_out_is_as_if_it_were_not_there);
     RUN_TEST(test_any_slicing_gives_the_same_way_and_bound);
     RUN_TEST(test_out_of_nodes_keeps_a_bound_that_holds);
     RUN_TEST(test_the_polyline_is_the_way_of_the_wider_disc_with_room_for_its_arcs);
