@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -43,7 +44,8 @@ def main() -> int:
     if args.json is not None:
         args.json.write_text(json.dumps(rows, indent=1) + "\n")
     missed = [r for r in rows if r["verdict"] != "ok"]
-    print(f"{len(rows) - len(missed)} of {len(rows)} rows within the targets")
+    load = " ".join(f"{v:.2f}" for v in os.getloadavg())
+    print(f"{len(rows) - len(missed)} of {len(rows)} rows within the targets; load average {load} on {os.cpu_count()} cores")
     return 1 if missed else 0
 
 
