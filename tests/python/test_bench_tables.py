@@ -113,3 +113,12 @@ def test_targets_are_for_safest_alone_by_hall_and_robot(data, name, objective, e
 def test_every_scenario_and_objective_gets_enough_queries():
     for legs in (1, 2, 3, 7, 10):
         assert legs * logs.runs_of(legs) >= logs.QUERIES_MIN and logs.runs_of(legs) >= logs.RUNS_MIN
+
+
+def test_an_exponent_is_called_what_it_is():
+    assert [curves.judged(k) for k in (0.5, 1.0, 1.2, 1.3)] == [
+        "less than linear",
+        "near-linear",
+        "near-linear",
+        "more than linear",
+    ]

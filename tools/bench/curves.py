@@ -33,7 +33,7 @@ HALL = (100.0, 60.0)  # m, over counts
 OBJECTIVES = ("shortest", "safest")
 RADIUS = 0.1  # m, of the robot
 ROOM = 0.05  # m, of ends beyond it
-QUERIES, SPARE = 10, 4  # wished; asked beyond them, for some may have no way
+QUERIES, SPARE = 30, 6  # wished; asked beyond them, for some may have no way
 LINEAR = 1.2  # an exponent up to here counts as near-linear
 CONFIG = "[planner]\nwork_units = 2000000000\n[limits]\ncells = 16777216\nopen_nodes = 2097152\n"
 MEASURES = ("load_ms", "shortest_ms", "safest_ms", "shortest_units", "safest_units")
@@ -80,17 +80,18 @@ def ring(rng: random.Random, x: float, y: float, size: float) -> np.ndarray:
 
 
 def make_legs(seed: int, hall: Hall, count: int) -> list[query.Leg]:
-    rng = random.Random(f"ends {seed} {len(hall.sizes)}")
+    """The same share of the way across in every hall, unless an obstacle is there: halls are compared."""
     x0, y0, x1, y1 = hall.world.bounds
     keep = RADIUS + ROOM
 
-    def end() -> tuple[float, float]:
+    def end(which: str) -> tuple[float, float]:
+        rng = random.Random(f"{which} {seed}")
         while True:
             p = (rng.uniform(x0 + keep, x1 - keep), rng.uniform(y0 + keep, y1 - keep))
             if (np.hypot(*(hall.centres - p).T) > hall.sizes + keep).all():
                 return p
 
-    return [query.Leg(str(i + 1), end(), [end()]) for i in range(count)]
+    return [query.Leg(str(i + 1), end(f"start {i}"), [end(f"goal {i}")]) for i in range(count)]
 
 
 def exponent(xs: list[float], ys: list[float]) -> float:
@@ -108,7 +109,7 @@ def main() -> int:
     load = os.getloadavg()
     found = {name: fits(rows) for name, rows in curves.items()}
     area = {o: area_exponent([r for rows in curves.values() for r in rows], o) for o in OBJECTIVES}
-    print_fits(found, area)
+    print_fits(curves, found, area)
     print("load average " + " ".join(f"{v:.2f}" for v in load))
     if args.json is not None:
         data = {"seed": args.seed, "load_average": load, "curves": curves, "exponents": found, "ms_per_work": area}
@@ -184,19 +185,25 @@ def fits(rows: list[dict]) -> dict:
 
 
 def area_exponent(rows: list[dict], objective: str) -> float:
-    """Of milliseconds over work units, which count the cells searched: of every query of both curves."""
+    """Of milliseconds over work units (cells searched, pieces checked, points of the swarm), of every query."""
     pairs = [pair for r in rows for pair in r[f"{objective}_each"]]
     return exponent([units for units, _ in pairs], [ms for _, ms in pairs])
 
 
-def print_fits(found: dict, area: dict) -> None:
+def judged(k: float) -> str:
+    return "more than linear" if k > LINEAR else "near-linear" if k > 2.0 - LINEAR else "less than linear"
+
+
+def print_fits(curves: dict, found: dict, area: dict) -> None:
+    print(f"exponents: up to {2.0 - LINEAR:g} less than linear, up to {LINEAR:g} near-linear, else more than linear")
+    print("last: between the last two points alone")
     for name, of in found.items():
-        print(f"exponents over {name}: " + ", ".join(f"{m} {k:.2f}" for m, k in of.items()))
+        steep = fits(curves[name][-2:])
+        for m, k in of.items():
+            end = ", steeper at the end" if steep[m] > LINEAR >= k else ""
+            print(f"{m:<15} over {name:<10} {k:>5.2f}, last {steep[m]:>5.2f}  {judged(k)}{end}")
     for objective, k in area.items():
-        print(f"{objective}: ms over work units, exponent {k:.2f}: {'near-linear' if k <= LINEAR else 'NOT near-linear'}")
-    for m in MEASURES:
-        k = found["size"][m]
-        print(f"{m} over cells, exponent {k:.2f}: {'near-linear' if k <= LINEAR else 'NOT near-linear'}")
+        print(f"{objective + '_ms':<15} over {'units':<10} {k:>5.2f}  {judged(k)}")
 
 
 def draw(path: Path, curves: dict, found: dict) -> None:
