@@ -27,6 +27,21 @@ def test_grown_obstacles_lie_around_the_exact_ones_and_not_much_beyond():
     assert grown.difference(exact.buffer(0.005)).area < 1e-9
 
 
+def test_sides_move_out_by_the_radius_exactly_and_arcs_by_what_the_tangents_need():
+    square = [Polygon([(0, 0), (0, 2), (2, 2), (2, 0)])]  # clockwise: either turn is taken
+    for quarter in (1, 8, 12):
+        (out,) = peers.grown(square, 0.5, quarter)
+        assert out.bounds == pytest.approx((-0.5, -0.5, 2.5, 2.5), abs=1e-12)
+        away = [square[0].distance(shapely.Point(c)) for c in out.exterior.coords]
+        assert max(away) == pytest.approx(0.5 / math.cos(math.pi / (4 * quarter)), abs=1e-12)
+        assert len(out.exterior.coords) - 1 == 4 * quarter
+
+
+def test_a_robot_of_millimetres_gets_one_corner_for_a_corner():
+    (out,) = peers.grown(SQUARES[:1], 1e-3)
+    assert len(out.exterior.coords) - 1 == 4
+
+
 def test_overlapping_ones_are_united():
     assert len(peers.grown(SQUARES, 0.1)) == 1
     assert len(peers.grown([SQUARES[0], Polygon([(9, 9), (10, 9), (10, 10)])], 0.1)) == 2

@@ -1,6 +1,7 @@
 //! Queries of the `polyanya` crate on one scene, timed: JSON in, JSON out. Run by ../../peers.py.
 //!
-//! In: {"outer": [[x, y], ...], "holes": [[[x, y], ...], ...], "pairs": [[x0, y0, x1, y1], ...], "repeat": N}
+//! In: {"outer": [[x, y], ...], "holes": [[[x, y], ...], ...], "pairs": [[x0, y0, x1, y1], ...], "repeat": N,
+//! "scale": units of the mesh a metre}
 //! The holes are the obstacles already grown by the disc's radius, disjoint. The mesh's polygons are merged and baked
 //! before any query, as the crate advises; that time is "mesh_ms". Of each pair the length and the median and 99th
 //! percentile of `repeat` runs of `Mesh::path`.
@@ -11,18 +12,18 @@ use serde_json::{json, Value};
 use std::io::Read;
 use std::time::Instant;
 
-fn point(v: &Value) -> Vec2 {
-    Vec2::new(v[0].as_f64().unwrap() as f32, v[1].as_f64().unwrap() as f32)
+fn point(x: &Value, y: &Value, scale: f64) -> Vec2 {
+    Vec2::new((x.as_f64().unwrap() * scale) as f32, (y.as_f64().unwrap() * scale) as f32)
 }
 
-fn ring(v: &Value) -> Vec<Vec2> {
-    v.as_array().unwrap().iter().map(point).collect()
+fn ring(v: &Value, scale: f64) -> Vec<Vec2> {
+    v.as_array().unwrap().iter().map(|p| point(&p[0], &p[1], scale)).collect()
 }
 
-fn mesh_of(scene: &Value) -> Mesh {
-    let mut triangulation = Triangulation::from_outer_edges(&ring(&scene["outer"]));
+fn mesh_of(scene: &Value, scale: f64) -> Mesh {
+    let mut triangulation = Triangulation::from_outer_edges(&ring(&scene["outer"], scale));
     for hole in scene["holes"].as_array().unwrap() {
-        triangulation.add_obstacle(ring(hole));
+        triangulation.add_obstacle(ring(hole, scale));
     }
     let mut mesh = triangulation.as_navmesh();
     for _ in 0..3 {
@@ -32,9 +33,8 @@ fn mesh_of(scene: &Value) -> Mesh {
     mesh
 }
 
-fn run(mesh: &Mesh, pair: &Value, repeat: usize) -> Value {
-    let number = |i: usize| pair[i].as_f64().unwrap() as f32;
-    let (from, to) = (Vec2::new(number(0), number(1)), Vec2::new(number(2), number(3)));
+fn run(mesh: &Mesh, pair: &Value, repeat: usize, scale: f64) -> Value {
+    let (from, to) = (point(&pair[0], &pair[1], scale), point(&pair[2], &pair[3], scale));
     let mut ms = Vec::with_capacity(repeat);
     let mut length = Value::Null;
     for _ in 0..repeat {
@@ -50,7 +50,7 @@ fn run(mesh: &Mesh, pair: &Value, repeat: usize) -> Value {
                 sum += (dx * dx + dy * dy).sqrt();
                 at = *p;
             }
-            length = json!(sum);
+            length = json!(sum / scale);
         }
     }
     ms.sort_by(|a, b| a.total_cmp(b));
@@ -61,10 +61,11 @@ fn main() {
     let mut text = String::new();
     std::io::stdin().read_to_string(&mut text).unwrap();
     let scene: Value = serde_json::from_str(&text).unwrap();
+    let scale = scene["scale"].as_f64().unwrap();
     let started = Instant::now();
-    let mesh = mesh_of(&scene);
+    let mesh = mesh_of(&scene, scale);
     let mesh_ms = started.elapsed().as_secs_f64() * 1e3;
     let repeat = scene["repeat"].as_u64().unwrap().max(1) as usize;
-    let pairs: Vec<Value> = scene["pairs"].as_array().unwrap().iter().map(|p| run(&mesh, p, repeat)).collect();
+    let pairs: Vec<Value> = scene["pairs"].as_array().unwrap().iter().map(|p| run(&mesh, p, repeat, scale)).collect();
     println!("{}", json!({"mesh_ms": mesh_ms, "polygons": mesh.layers[0].polygons.len(), "pairs": pairs}));
 }
