@@ -12,7 +12,8 @@
 // against the obstacles' true shapes (gaps narrower than the circles of the shelves are used in the paper, so its
 // circles cannot be what collides). 200 iterations, w falling linearly from 0.9 to 0.4, c1 = c2 = 2.
 // Where the paper is silent, ours: the number of via-points (it says only that the spline needs at least 4 points),
-// 50 particles, alpha 1.05 (table 1 has OA 0 at d = R + r: near 1), beta 2 (its three pairs of paths need beta above 1.7 for the safe one to have the lesser F).
+// 50 particles, alpha 1.05 (table 1 has OA 0 at d = R + r: near 1), beta 2 (its three pairs of paths need beta above
+// 1.7 for the safe one to have the lesser F).
 // Obstacles with R above a quarter of the bounds' shorter side (walls) have no circle: it would cover the hall. Scans
 // have none either; both still collide.
 // Samples are even by arc length from the very start. The paper's left the first leg out with 100 samples: `skip_first`

@@ -1,6 +1,7 @@
 """aisle paper 1: its measures by hand, the least exposure and the shortest way where they are known."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,18 @@ def test_avoidance_is_equation_5_averaged_over_the_points():
     points = np.array([[4.6, 3.8], [4.6, 4.8], [9.0, 7.0]])
     expected = (1.0 + (1.0 - 1.05 * 1.0 / 1.5) + 0.0) / 3.0
     assert paper1.avoidance(world, 0.5, points) == pytest.approx(expected)
+
+
+def define(header, name):
+    found = re.search(rf"^#define {name} (\S+)", (ROOT / "src" / "plan" / header).read_text(), re.MULTILINE)
+    return float(found.group(1))
+
+
+def test_constants_are_those_of_the_planner():
+    assert paper1.ALPHA == define("paper_swarm.h", "AISLE_PAPER_ALPHA")
+    assert paper1.BETA == define("paper_swarm.h", "AISLE_PAPER_BETA")
+    assert paper1.WALL == define("paper_swarm.h", "AISLE_PAPER_WALL")
+    assert paper1.WEIGHT == define("objective.h", "AISLE_OBJECTIVE_RISK_WEIGHT")
 
 
 def test_walls_have_no_circle():

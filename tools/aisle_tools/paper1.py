@@ -28,7 +28,7 @@ from aisle_tools.world import World  # noqa: E402
 
 ALPHA, BETA, WALL = 1.05, 2.0, 0.25  # as in src/plan/paper_swarm.h
 BETA_SHORTEST = 1e-6  # length alone, feasibility first
-WEIGHT = 8.0  # risk_weight of SAFEST, as in src/plan/objective.h
+WEIGHT = 15.0  # risk_weight of SAFEST, as in src/plan/objective.h
 CREEP = 0.5  # m, creep_clearance of the default vehicle
 KINDS = {"linear": options_t.LINEAR, "spline": options_t.SPLINE}
 PAPER_CONVERGED = {"linear": 25.2801, "spline": 25.8663}
