@@ -1,6 +1,7 @@
 #include "world/layout.h"
 
 #include "base/check.h"
+#include "world/layout_content.h"
 #include "world/layout_internal.h"
 
 static uint32_t or_default(uint32_t value, uint32_t fallback) {
@@ -22,6 +23,8 @@ void aisle_layout_carve(aisle_layout *self, aisle_arena *arena, const aisle_limi
     aisle_id_map_carve(&staging->ids, arena, zones);
     AISLE_ASSERT(PATCH_IDS <= AISLE_LAYOUT_MAX_POLYGONS); // one map does for either message
     aisle_id_map_carve(&staging->message, arena, AISLE_LAYOUT_MAX_POLYGONS);
+    self->diff.change = aisle_arena_take(arena, AISLE_LAYOUT_CHANGES_MAX, sizeof *self->diff.change);
+    self->diff.everything = true;
     aisle_layout_index_carve(&self->index, arena, zones);
     aisle_layout_rects_carve(&self->rects, arena, cells);
     aisle_layout_index_carve(&self->wide, arena, zones + self->rects.capacity);
@@ -40,6 +43,18 @@ int32_t aisle_layout_map_id(const aisle_layout *self) {
 
 int32_t aisle_layout_map_revision(const aisle_layout *self) {
     return self->has_active ? aisle_layout_held(self)->header.map_revision : 0;
+}
+
+const aisle_layout_diff *aisle_layout_changes(const aisle_layout *self) {
+    return &self->diff;
+}
+
+uint64_t aisle_layout_content(const aisle_layout *self) {
+    AISLE_ASSERT(aisle_layout_is_in_force(self));
+    const aisle_layout_store *store = aisle_layout_held(self);
+    const bool has_scan = store->header.tiles > 0;
+    return aisle_content_of_area(store->header.bounds, &store->lattice, has_scan) + store->zones_content +
+           (has_scan ? store->scan_content : 0U);
 }
 
 const aisle_grid *aisle_layout_grid(const aisle_layout *self) {

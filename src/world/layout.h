@@ -79,8 +79,25 @@ typedef struct aisle_layout_tile {
 
 typedef enum aisle_layout_stage { AISLE_STAGE_EMPTY, AISLE_STAGE_FILLING, AISLE_STAGE_COMPLETE } aisle_layout_stage;
 
+// What the last commit changed: everything, or these polygons. One that moved or says something else has left and come;
+// one that came as it was, perhaps in another place of the order, is not listed.
+#define AISLE_LAYOUT_CHANGES_MAX (AISLE_LAYOUT_PATCH_MAX_REMOVED + 2U * AISLE_LAYOUT_PATCH_MAX_POLYGONS)
+typedef struct aisle_layout_change {
+    aisle_aabb box; // m
+    int32_t id;
+    int8_t kind;    // AISLE_POLYGON_*
+    bool is_added;  // it came; else it left
+    uint16_t index; // of the zone, in the layout now or in the one before
+} aisle_layout_change;
+typedef struct aisle_layout_diff {
+    bool everything; // another layout, or a patch on one that was not in force yet; the list is empty
+    uint32_t count;
+    aisle_layout_change *change; // [AISLE_LAYOUT_CHANGES_MAX]
+} aisle_layout_diff;
+
 typedef struct aisle_layout_staging { // what is known of the staged store
     aisle_layout_stage stage;
+    bool is_patch;                                                                   // made of the active one
     uint64_t parts;                                                                  // bit p set: part p is in
     uint32_t tiles;                                                                  // in
     uint16_t part_first[AISLE_LAYOUT_MAX_PARTS], part_count[AISLE_LAYOUT_MAX_PARTS]; // zones of a part
@@ -97,6 +114,7 @@ typedef struct aisle_layout {
     uint8_t phase; // of the build
     uint32_t next; // build progress in the phase
     aisle_layout_staging staging;
+    aisle_layout_diff diff;
     aisle_layout_index index; // of the active store
     aisle_layout_index wide;  // of its blocks
     aisle_layout_rects rects; // of its scan
@@ -128,6 +146,12 @@ void aisle_layout_commit(aisle_layout *self);
 // About `units` rows or polygons of work; the index and clearing the grid are one unit each (O(polygons), O(cells)).
 // AISLE_BUSY, then AISLE_OK. AISLE_ERR_ARG: nothing was committed.
 aisle_status aisle_layout_build(aisle_layout *self, uint32_t units);
+
+// What the last commit changed; everything before the first. Valid until the next commit or patch taken. O(1).
+const aisle_layout_diff *aisle_layout_changes(const aisle_layout *self);
+// What the layout in force says, as one number (layout_content.h): bounds, cells, polygons, scan; not map_id, revision,
+// order of the polygons nor the parts it came in. After any patches the same as of a whole layout that says so. O(1).
+uint64_t aisle_layout_content(const aisle_layout *self);
 
 // ---- the layout in force
 const aisle_grid *aisle_layout_grid(const aisle_layout *self);

@@ -1,4 +1,5 @@
 #include "base/check.h"
+#include "world/layout_content.h"
 #include "world/layout_internal.h"
 
 enum {
@@ -19,6 +20,10 @@ bool aisle_layout_is_in_force(const aisle_layout *self) {
 
 void aisle_layout_commit(aisle_layout *self) {
     AISLE_ASSERT(self->staging.stage == AISLE_STAGE_COMPLETE);
+    if (!(self->staging.is_patch && self->phase == PHASE_DONE)) {
+        self->diff.everything = true;
+        self->diff.count = 0;
+    }
     self->active = (uint8_t)(1U - self->active);
     self->has_active = true;
     self->staging.stage = AISLE_STAGE_EMPTY;
@@ -39,6 +44,7 @@ static void mark_scan_row(aisle_layout *self, uint32_t iy) {
     const uint32_t w = self->grid.lattice.w;
     uint32_t end;
     for (uint32_t ix = 0; aisle_layout_scan_run(self, iy, &ix, w, &end); ix = end) {
+        aisle_layout_active(self)->scan_content += aisle_content_of_run(iy, ix, end);
         aisle_grid_mark_run(&self->grid, iy, ix, end);
     }
 }
@@ -100,6 +106,7 @@ static void do_item(aisle_layout *self) {
         build_indices(self);
         break;
     case PHASE_CLEAR:
+        aisle_layout_active(self)->scan_content = 0;
         status = aisle_grid_begin(&self->grid, &aisle_layout_active(self)->lattice);
         AISLE_ASSERT(status == AISLE_OK); // checked when the layout came
         break;

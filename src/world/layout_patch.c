@@ -7,6 +7,7 @@
 #define EDIT_PUT 0xFFFFU
 #define EDIT_REMOVED 0x10000U
 #define EDIT_FOUND 0x20000U // in the active layout
+#define EDIT_SAME 0x40000U  // and put again as it was
 
 typedef struct totals {
     uint32_t zones, vertices;
@@ -95,22 +96,55 @@ static bool check_edits(aisle_layout *self, const aisle_layout_patch_msg *msg, a
 
 // ---- the result
 
+static void note_change(aisle_layout *self, const aisle_layout_store *store, uint32_t index, bool is_added) {
+    const aisle_zone *zone = &store->zones[index];
+    AISLE_ASSERT(self->diff.count < AISLE_LAYOUT_CHANGES_MAX);
+    self->diff.change[self->diff.count] =
+        (aisle_layout_change){zone->box, zone->id, zone->kind, is_added, (uint16_t)index};
+    self->diff.count++;
+}
+
+static void put_polygon(aisle_layout *self, const aisle_polygon_msg *polygon, bool is_as_it_was) {
+    aisle_layout_store *store = aisle_layout_staged(self);
+    aisle_layout_store_add(store, polygon);
+    if (!is_as_it_was) {
+        note_change(self, store, store->zone_count - 1U, true);
+    }
+}
+
+// A zone of the active layout that the message names. Says whether it is put again as it was.
+static bool lift_zone(aisle_layout *self, uint32_t i, const aisle_polygon_msg *put_again) {
+    const aisle_layout_store *active = aisle_layout_active(self);
+    aisle_layout_staged(self)->zones_content -= aisle_layout_store_content(active, &active->zones[i]);
+    if (put_again != NULL && aisle_layout_store_is_same(active, &active->zones[i], put_again)) {
+        return true;
+    }
+    note_change(self, active, i, false);
+    return false;
+}
+
 static void stage_edited(aisle_layout *self, const aisle_layout_patch_msg *msg) {
     const aisle_layout_store *active = aisle_layout_active(self);
     aisle_layout_store *store = aisle_layout_staged(self);
     const aisle_id_map *edits = &self->staging.message;
     for (uint32_t i = 0; i < active->zone_count; i++) {
-        const uint32_t edit = edit_of(edits, active->zones[i].id);
-        if (edit == 0) {
+        uint32_t *edit = aisle_id_map_find(edits, active->zones[i].id);
+        if (edit == NULL) {
             aisle_layout_store_add_zone(store, active, &active->zones[i]);
-        } else if ((edit & EDIT_REMOVED) == 0) { // changed in place
-            aisle_layout_store_add(store, &msg->polygons[(edit & EDIT_PUT) - 1U]);
+            continue;
+        }
+        const uint32_t number = *edit & EDIT_PUT;
+        const aisle_polygon_msg *put_again = number == 0 ? NULL : &msg->polygons[number - 1U];
+        const bool is_same = lift_zone(self, i, put_again);
+        *edit |= is_same ? EDIT_SAME : 0U;
+        if ((*edit & EDIT_REMOVED) == 0) { // changed in place
+            put_polygon(self, put_again, is_same);
         }
     }
     for (int16_t i = 0; i < msg->num_polygons; i++) {
         const uint32_t edit = edit_of(edits, msg->polygons[i].id);
         if ((edit & EDIT_FOUND) == 0 || (edit & EDIT_REMOVED) != 0) {
-            aisle_layout_store_add(store, &msg->polygons[i]);
+            put_polygon(self, &msg->polygons[i], (edit & EDIT_SAME) != 0);
         }
     }
 }
@@ -119,6 +153,9 @@ static void stage_patch(aisle_layout *self, const aisle_layout_patch_msg *msg) {
     const aisle_layout_store *active = aisle_layout_active(self);
     aisle_layout_store *store = aisle_layout_staged(self);
     aisle_layout_stage_begin(self, &active->header, &active->lattice);
+    store->zones_content = active->zones_content;
+    self->diff.everything = false;
+    self->diff.count = 0;
     stage_edited(self, msg);
     if (active->header.tiles > 0) {
         aisle_layout_store_copy_scan(store, active);
@@ -126,6 +163,8 @@ static void stage_patch(aisle_layout *self, const aisle_layout_patch_msg *msg) {
     store->header.map_revision = msg->map_revision;
     store->header.polygons = store->zone_count;
     store->header.crc32 = aisle_layout_store_crc(store);
+    store->scan_content = active->scan_content;
+    self->staging.is_patch = true;
     self->staging.stage = AISLE_STAGE_COMPLETE;
 }
 

@@ -144,7 +144,9 @@ void aisle_layout_stage_begin(aisle_layout *self, const aisle_layout_header *hea
     store->lattice = *lattice;
     store->zone_count = 0;
     store->vertex_count = 0;
+    store->zones_content = 0;
     staging->stage = AISLE_STAGE_FILLING;
+    staging->is_patch = false;
     staging->parts = 0;
     staging->tiles = 0;
     memset(staging->tile, 0, AISLE_LAYOUT_TILES_MAX * sizeof *staging->tile);

@@ -4,6 +4,7 @@
 #include "base/check.h"
 #include "base/crc32.h"
 #include "wire/codec.h"
+#include "world/layout_content.h"
 
 #include <float.h>
 #include <string.h>
@@ -70,6 +71,7 @@ void aisle_layout_store_add(aisle_layout_store *self, const aisle_polygon_msg *p
     zone->value = polygon->value;
     zone->direction = polygon->direction;
     zone->box = aisle_convex_aabb(&(aisle_convex){v, zone->n, 0.0});
+    self->zones_content += aisle_layout_store_content(self, zone);
 }
 
 void aisle_layout_store_add_zone(aisle_layout_store *self, const aisle_layout_store *from, const aisle_zone *zone) {
@@ -78,6 +80,11 @@ void aisle_layout_store_add_zone(aisle_layout_store *self, const aisle_layout_st
     *to = *zone;
     to->first = first;
     memcpy(&self->vertices[first], &from->vertices[zone->first], zone->n * sizeof *self->vertices);
+}
+
+uint64_t aisle_layout_store_content(const aisle_layout_store *self, const aisle_zone *zone) {
+    return aisle_content_of_polygon(zone->id, zone->kind, zone->value, zone->direction, &self->vertices[zone->first],
+                                    zone->n);
 }
 
 void aisle_layout_store_polygon(const aisle_layout_store *self, const aisle_zone *zone, aisle_polygon_msg *out) {

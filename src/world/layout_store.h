@@ -32,10 +32,12 @@ typedef struct aisle_layout_header { // what every part of one revision says ali
 
 typedef struct aisle_layout_store {
     aisle_layout_header header;
-    aisle_lattice lattice; // of the planning grid; w = 0: not known yet
-    aisle_zone *zones;     // [zone_capacity]
-    aisle_vec2 *vertices;  // [vertex_capacity]
-    uint64_t *scan;        // bit iy * w + ix of the lattice set: cell occupied; meaningful if header.tiles > 0
+    aisle_lattice lattice;  // of the planning grid; w = 0: not known yet
+    aisle_zone *zones;      // [zone_capacity]
+    aisle_vec2 *vertices;   // [vertex_capacity]
+    uint64_t *scan;         // bit iy * w + ix of the lattice set: cell occupied; meaningful if header.tiles > 0
+    uint64_t zones_content; // layout_content.h: of the zones
+    uint64_t scan_content;  // and of the scan; known when the layout is built
     uint32_t zone_count, zone_capacity;
     uint32_t vertex_count, vertex_capacity;
     uint32_t cell_capacity;
@@ -47,10 +49,12 @@ void aisle_layout_store_carve(aisle_layout_store *self, aisle_arena *arena, uint
 // A polygon one may store: id > 0, kind known, 3..16 vertices, convex, value and direction finite and in range.
 bool aisle_polygon_is_valid(const aisle_polygon_msg *polygon);
 
-// Appends a valid polygon; there must be room.
+// Appends a valid polygon; there must be room. O(vertices).
 void aisle_layout_store_add(aisle_layout_store *self, const aisle_polygon_msg *polygon);
-// Appends a zone of another store.
+// Appends a zone of another store; zones_content is left to the caller.
 void aisle_layout_store_add_zone(aisle_layout_store *self, const aisle_layout_store *from, const aisle_zone *zone);
+// Its part of zones_content. O(vertices).
+uint64_t aisle_layout_store_content(const aisle_layout_store *self, const aisle_zone *zone);
 // The zone as a message again, and whether it says the same as a valid polygon, bit for bit.
 void aisle_layout_store_polygon(const aisle_layout_store *self, const aisle_zone *zone, aisle_polygon_msg *out);
 bool aisle_layout_store_is_same(const aisle_layout_store *self, const aisle_zone *zone,

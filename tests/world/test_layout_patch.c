@@ -80,6 +80,65 @@ static void test_a_patch_removes_changes_and_appends_in_order(void) {
     }
 }
 
+static void expect_change(uint32_t i, const aisle_polygon_msg *polygon, bool is_added) {
+    const aisle_layout_change *change = &aisle_layout_changes(&fix_layout)->change[i];
+    aisle_vec2 v[16];
+    const aisle_convex shape = fix_shape(polygon, v);
+    const aisle_aabb box = aisle_convex_aabb(&shape);
+    TEST_ASSERT_EQUAL_INT32(polygon->id, change->id);
+    TEST_ASSERT_EQUAL_INT8(polygon->kind, change->kind);
+    TEST_ASSERT_EQUAL(is_added, change->is_added);
+    TEST_ASSERT_EQUAL_MEMORY(&box, &change->box, sizeof box);
+}
+
+static void test_changes_list_what_left_and_what_came(void) {
+    TEST_ASSERT_TRUE(aisle_layout_changes(&fix_layout)->everything);
+    fix_load(&scene);
+    TEST_ASSERT_TRUE(aisle_layout_changes(&fix_layout)->everything);
+    remove_id(scene.polygons[3].id);
+    remove_id(scene.polygons[11].id); // put again as it was: not listed, though it comes last now
+    remove_id(scene.polygons[12].id); // put again elsewhere
+    put_box(scene.polygons[12].id, 2.0);
+    put(&scene.polygons[11]);
+    put(&scene.polygons[20]); // as it is
+    patch.polygons[3] = scene.polygons[21];
+    patch.polygons[3].direction = 0.5F; // says something else
+    patch.num_polygons = 4;
+    put_box(999999, 6.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, send());
+    fix_enforce();
+    const aisle_layout_diff *diff = aisle_layout_changes(&fix_layout);
+    TEST_ASSERT_FALSE(diff->everything);
+    TEST_ASSERT_EQUAL_UINT32(6, diff->count);
+    expect_change(0, &scene.polygons[3], false);
+    expect_change(1, &scene.polygons[12], false);
+    expect_change(2, &scene.polygons[21], false);
+    expect_change(3, &patch.polygons[3], true);
+    expect_change(4, &patch.polygons[0], true);
+    expect_change(5, &patch.polygons[4], true);
+    TEST_ASSERT_EQUAL(AISLE_OK, send()); // a repeat, and what is refused, change nothing
+    patch.map_revision = 9;
+    fix_expect_refusal(send(), AISLE_STATUS_REVISION_GAP, 2);
+    TEST_ASSERT_EQUAL_UINT32(6, diff->count);
+    want.map_revision = 3;
+    want.map_id = 7;
+    (void)fix_send_part(&want, 0); // begun only
+    TEST_ASSERT_FALSE(diff->everything);
+    (void)fix_send_part(&want, 1);
+    fix_enforce();
+    TEST_ASSERT_TRUE(diff->everything);
+    TEST_ASSERT_EQUAL_UINT32(0, diff->count);
+}
+
+static void test_a_patch_on_an_unfinished_layout_changes_everything(void) {
+    fix_send(&scene);
+    aisle_layout_commit(&fix_layout);
+    put_box(1, 1.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, send());
+    fix_enforce();
+    TEST_ASSERT_TRUE(aisle_layout_changes(&fix_layout)->everything);
+}
+
 static void test_random_patches_one_after_another_keep_to_the_model(void) {
     aisle_rng rng = aisle_rng_seed(132);
     fix_load(&scene);
@@ -232,6 +291,8 @@ static void test_a_patch_waits_for_commit_and_gives_way_to_newer_layouts_only(vo
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_patch_removes_changes_and_appends_in_order);
+    RUN_TEST(test_changes_list_what_left_and_what_came);
+    RUN_TEST(test_a_patch_on_an_unfinished_layout_changes_everything);
     RUN_TEST(test_random_patches_one_after_another_keep_to_the_model);
     RUN_TEST(test_a_patch_keeps_the_scan);
     RUN_TEST(test_patches_on_nothing_another_map_or_another_base_are_refused);
