@@ -10,7 +10,7 @@
 // both with AISLE_GRID_SLACK cells to spare.
 // Method: two passes (columns, then rows), Meijster, Roerdink & Hesselink 2000, "A general algorithm for
 // computing distance transforms in linear time", integers only. Ours: saturation, so that a parabola matters for 255
-// columns to either side only: 32 bits do, and the scratch is one window whatever the width (proof in grid.c).
+// columns to either side only: 32 bits do, and the scratch is one window whatever the width (grid_field.h).
 // Memory: 2 bytes a cell and 12 KiB. Time: O(cells), in slices of rows.
 #ifndef AISLE_WORLD_GRID_H
 #define AISLE_WORLD_GRID_H
@@ -32,6 +32,10 @@ typedef struct aisle_lattice {
     double res;    // m a cell
     uint32_t w, h; // cells
 } aisle_lattice;
+
+typedef struct aisle_cells { // [x0, x1) by [y0, y1)
+    int32_t x0, y0, x1, y1;
+} aisle_cells;
 
 typedef struct aisle_parabola { // of the row pass: column `at` is the nearest one from column `from` on
     int32_t from, at, sq;       // sq: squared distance, in the column, to its nearest occupied cell
@@ -59,6 +63,8 @@ bool aisle_lattice_over(aisle_vec2 lo, aisle_vec2 hi, double res, aisle_lattice 
 uint32_t aisle_lattice_cell(const aisle_lattice *lattice, aisle_vec2 p, bool *inside);
 aisle_vec2 aisle_lattice_centre(const aisle_lattice *lattice, uint32_t cell);
 
+aisle_cells aisle_lattice_cells(const aisle_lattice *lattice); // all of them
+
 void aisle_grid_carve(aisle_grid *self, aisle_arena *arena, uint32_t cells);
 
 // Starts a build: every cell free. AISLE_ERR_CAPACITY: w * h > capacity. AISLE_ERR_ARG: w or h 0 or above
@@ -69,6 +75,8 @@ aisle_status aisle_grid_begin(aisle_grid *self, const aisle_lattice *lattice);
 // most those within 2 AISLE_GRID_SLACK cells of it: that is what the arithmetic needs for coordinates within
 // AISLE_SHAPE_COORD_MAX and dents of a valid shape. O(rows * vertices + cells); what lies outside is clipped.
 void aisle_grid_mark_convex(aisle_grid *self, const aisle_convex *shape);
+// At any time: zeros in the field of those of these cells that lie in `in`, which lies in the lattice. O(rows * vertices).
+void aisle_grid_mark_convex_in(aisle_grid *self, const aisle_convex *shape, aisle_cells in);
 void aisle_grid_mark_cell(aisle_grid *self, uint32_t cell);
 // Cells [ix0, end) of row iy; end is clipped to the row.
 void aisle_grid_mark_run(aisle_grid *self, uint32_t iy, uint32_t ix0, uint32_t end);

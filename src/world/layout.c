@@ -29,6 +29,7 @@ void aisle_layout_carve(aisle_layout *self, aisle_arena *arena, const aisle_limi
     aisle_layout_rects_carve(&self->rects, arena, cells);
     aisle_layout_index_carve(&self->wide, arena, zones + self->rects.capacity);
     aisle_grid_carve(&self->grid, arena, cells);
+    aisle_grid_window_carve(&self->update.window, arena);
 }
 
 // ---- what is held

@@ -20,12 +20,13 @@
 // again) come last in the message's order; so a full layout_t sent later for the same revision is a duplicate if its
 // sender does alike.
 //
-// Files: layout_store (what a layout is), layout_stage (parts), layout_tile (tiles), layout_patch, layout_index,
-// layout_build (index and grid), layout_gap, layout_facing, layout (questions).
+// Files: layout_store (what a layout is), layout_content, layout_stage (parts), layout_tile (tiles), layout_patch,
+// layout_index, layout_build (index and grid), layout_mark (what is occupied), layout_update (the grid after a patch),
+// layout_gap, layout_facing, layout (questions).
 //
 // Memory: carved once from limits; 11.7 MiB with the default ones, 8.0 of them the grid, 1.2 each store. Time: part
-// O(polygons * vertices^2), the last one O(all of them); tile O(cells + tiles); patch O(polygons * vertices^2 +
-// cells/64); commit O(1); build O(cells).
+// O(polygons * vertices^2), the last one O(all of them); tile O(cells + tiles); patch O(its polygons * vertices^2 + all
+// polygons); commit O(1); build O(cells), of a patch on a layout in force O(all blocks + cells around what changed).
 #ifndef AISLE_WORLD_LAYOUT_H
 #define AISLE_WORLD_LAYOUT_H
 
@@ -37,6 +38,7 @@
 #include "world/id_map.h"
 #include "world/layout_index.h"
 #include "world/layout_store.h"
+#include "world/layout_update.h"
 #include "world/shape.h"
 
 #define AISLE_LAYOUT_RESOLUTION_DEFAULT 0.05 // m
@@ -119,6 +121,8 @@ typedef struct aisle_layout {
     aisle_layout_index wide;  // of its blocks
     aisle_layout_rects rects; // of its scan
     aisle_grid grid;          // of the active store
+    bool has_base;            // the staged store is still the one before, and grid was its
+    aisle_layout_update update;
 } aisle_layout;
 
 // A 0 in limits is its default. self is usable unless arena->overflow or measuring.
@@ -143,8 +147,9 @@ int32_t aisle_layout_map_revision(const aisle_layout *self);
 
 // Swaps; not in force until build() says AISLE_OK. Only when is_staged().
 void aisle_layout_commit(aisle_layout *self);
-// About `units` rows or polygons of work; the index and clearing the grid are one unit each (O(polygons), O(cells)).
-// AISLE_BUSY, then AISLE_OK. AISLE_ERR_ARG: nothing was committed.
+// About `units` rows or polygons of work; each index and clearing the grid are one unit each (O(blocks), O(cells)).
+// Grid, field and indices come out the same bit for bit whether a patch or a whole layout led to them, and however it was
+// cut. AISLE_BUSY, then AISLE_OK. AISLE_ERR_ARG: nothing was committed.
 aisle_status aisle_layout_build(aisle_layout *self, uint32_t units);
 
 // What the last commit changed; everything before the first. Valid until the next commit or patch taken. O(1).

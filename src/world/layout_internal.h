@@ -28,6 +28,9 @@ aisle_layout_relation aisle_layout_relate(aisle_layout *self, int32_t map_id, in
 // The revision an outdated one of map_id is older than.
 int32_t aisle_layout_newest(aisle_layout *self, int32_t map_id);
 
+// The store before the active one is about to be overwritten: a build that goes on from it builds the whole.
+void aisle_layout_forget_base(aisle_layout *self);
+
 // Empties the staged store for what follows.
 void aisle_layout_stage_begin(aisle_layout *self, const aisle_layout_header *header, const aisle_lattice *lattice);
 // AISLE_OK and complete if all parts and tiles are in, else AISLE_PARTIAL.

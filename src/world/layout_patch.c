@@ -157,12 +157,9 @@ static void stage_patch(aisle_layout *self, const aisle_layout_patch_msg *msg) {
     self->diff.everything = false;
     self->diff.count = 0;
     stage_edited(self, msg);
-    if (active->header.tiles > 0) {
-        aisle_layout_store_copy_scan(store, active);
-    }
     store->header.map_revision = msg->map_revision;
     store->header.polygons = store->zone_count;
-    store->header.crc32 = aisle_layout_store_crc(store);
+    store->is_crc_due = true; // for a repeat as a whole layout, which may never come
     store->scan_content = active->scan_content;
     self->staging.is_patch = true;
     self->staging.stage = AISLE_STAGE_COMPLETE;

@@ -84,7 +84,9 @@ static bool read_header(const aisle_layout_msg *msg, aisle_layout_header *out) {
     return true;
 }
 
-static bool is_same_content(const aisle_layout_header *a, const aisle_layout_header *b) {
+static bool is_same_content(aisle_layout_store *store, const aisle_layout_header *b) {
+    aisle_layout_store_settle_crc(store);
+    const aisle_layout_header *a = &store->header;
     return a->crc32 == b->crc32 && a->tiles == b->tiles && a->polygons == b->polygons &&
            memcmp(&a->bounds, &b->bounds, sizeof a->bounds) == 0 && is_near(a->resolution, b->resolution);
 }
@@ -140,7 +142,9 @@ static bool check_limits(const aisle_layout *self, const aisle_layout_header *he
 void aisle_layout_stage_begin(aisle_layout *self, const aisle_layout_header *header, const aisle_lattice *lattice) {
     aisle_layout_store *store = aisle_layout_staged(self);
     aisle_layout_staging *staging = &self->staging;
+    aisle_layout_forget_base(self);
     store->header = *header;
+    store->is_crc_due = false;
     store->lattice = *lattice;
     store->zone_count = 0;
     store->vertex_count = 0;
@@ -269,9 +273,9 @@ static aisle_status settle_part(aisle_layout *self, aisle_refusal *why) {
 // A part of the revision that is being staged: is it known, does it fit?
 static aisle_status judge_known(aisle_layout *self, const aisle_layout_msg *msg, const aisle_layout_header *header,
                                 bool *is_in, aisle_refusal *why) {
-    const aisle_layout_header *staged = &aisle_layout_staged(self)->header;
+    aisle_layout_store *staged = aisle_layout_staged(self);
     *is_in = self->staging.stage == AISLE_STAGE_COMPLETE; // a patched one has no parts to compare
-    if (!is_same_content(staged, header) || (!*is_in && staged->parts != header->parts)) {
+    if (!is_same_content(staged, header) || (!*is_in && staged->header.parts != header->parts)) {
         return aisle_layout_refuse(why, AISLE_STATUS_CONFLICT, 0, 0.0);
     }
     if (!*is_in && (self->staging.parts >> msg->part & 1U) != 0) {
@@ -292,7 +296,7 @@ aisle_status aisle_layout_take_part(aisle_layout *self, const aisle_layout_msg *
         return aisle_layout_refuse(why, AISLE_STATUS_OUTDATED, aisle_layout_newest(self, header.map_id), 0.0);
     }
     if (relation == AISLE_RELATION_ACTIVE) {
-        return is_same_content(&aisle_layout_active(self)->header, &header)
+        return is_same_content(aisle_layout_active(self), &header)
                    ? AISLE_OK
                    : aisle_layout_refuse(why, AISLE_STATUS_CONFLICT, 0, 0.0);
     }

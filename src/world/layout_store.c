@@ -124,6 +124,13 @@ uint32_t aisle_layout_store_crc(const aisle_layout_store *self) {
     return crc;
 }
 
+void aisle_layout_store_settle_crc(aisle_layout_store *self) {
+    if (self->is_crc_due) {
+        self->header.crc32 = aisle_layout_store_crc(self);
+        self->is_crc_due = false;
+    }
+}
+
 void aisle_layout_store_reorder(aisle_layout_store *self, uint16_t *to) {
     for (uint32_t i = 0; i < self->zone_count; i++) {
         while (to[i] != i) { // every swap brings one zone home
@@ -143,12 +150,6 @@ void aisle_layout_store_fill_scan(aisle_layout_store *self) {
     const uint32_t cells = self->lattice.w * self->lattice.h;
     AISLE_ASSERT(cells <= self->cell_capacity);
     memset(self->scan, 0xFF, (cells / WORD_BITS + 1U) * sizeof *self->scan);
-}
-
-void aisle_layout_store_copy_scan(aisle_layout_store *self, const aisle_layout_store *from) {
-    const uint32_t cells = self->lattice.w * self->lattice.h;
-    AISLE_ASSERT(cells <= self->cell_capacity);
-    memcpy(self->scan, from->scan, (cells / WORD_BITS + 1U) * sizeof *self->scan);
 }
 
 void aisle_layout_store_free_run(aisle_layout_store *self, uint32_t iy, uint32_t ix0, uint32_t end) {

@@ -36,6 +36,7 @@ typedef struct aisle_layout_store {
     aisle_zone *zones;      // [zone_capacity]
     aisle_vec2 *vertices;   // [vertex_capacity]
     uint64_t *scan;         // bit iy * w + ix of the lattice set: cell occupied; meaningful if header.tiles > 0
+    bool is_crc_due;        // header.crc32 was not computed yet
     uint64_t zones_content; // layout_content.h: of the zones
     uint64_t scan_content;  // and of the scan; known when the layout is built
     uint32_t zone_count, zone_capacity;
@@ -60,15 +61,15 @@ void aisle_layout_store_polygon(const aisle_layout_store *self, const aisle_zone
 bool aisle_layout_store_is_same(const aisle_layout_store *self, const aisle_zone *zone,
                                 const aisle_polygon_msg *polygon);
 
-// crc32 of all zones in order, as polygon_t's are encoded.
+// crc32 of all zones in order, as polygon_t's are encoded. O(vertices of all).
 uint32_t aisle_layout_store_crc(const aisle_layout_store *self);
+void aisle_layout_store_settle_crc(aisle_layout_store *self); // the header's, if it is due
 
 // Moves zone i to place to[i], a permutation of [0, zone_count); spoils to[].
 void aisle_layout_store_reorder(aisle_layout_store *self, uint16_t *to);
 
 // All cells of the lattice occupied. O(w * h / 64).
 void aisle_layout_store_fill_scan(aisle_layout_store *self);
-void aisle_layout_store_copy_scan(aisle_layout_store *self, const aisle_layout_store *from); // same lattice
 // Frees cells [ix0, end) of row iy.
 void aisle_layout_store_free_run(aisle_layout_store *self, uint32_t iy, uint32_t ix0, uint32_t end);
 // Next run of occupied cells in row iy at or after *ix0 and before ix1: [*ix0, *end). False: none.

@@ -105,7 +105,7 @@ static void test_any_slicing_of_the_build_gives_the_same_grid(void) {
             steps++;
         }
         const uint32_t items =
-            47U + 1U + 1U + 20U + 47U + 1U + 3U * 47U; // rects, index, clear, zones, scan, border, field
+            47U + 4U + 20U + 47U + 1U + 3U * 47U; // rects, corners and indices and clear, zones, scan, border, field
         TEST_ASSERT_TRUE(steps >= items / units && steps <= items / units + 3U);
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_build(&fix_layout, units));
         if (units == 1U) {
