@@ -2,7 +2,10 @@
 
 #include "base/check.h"
 #include "base/crc32.h"
+#include "base/digest.h"
 #include "wire/codec.h"
+
+#include <string.h>
 
 // ---- certificate
 
@@ -33,69 +36,76 @@ uint32_t aisle_path_certificate(const aisle_path_msg *path) {
     return crc;
 }
 
-// ---- places in the bytes
-
-static size_t offset_of(const char *name) {
-    size_t offset = 0;
-    bool known = aisle_msg_field_offset(AISLE_MSG_PATH, name, &offset);
-    AISLE_ASSERT(known);
-    return offset;
-}
-
-// The seven revisions and ids follow one another in path_t, and the waypoints are all that comes behind their number.
-uint32_t aisle_release_certificate(const uint8_t *bytes, size_t size) {
-    const size_t ids = offset_of("path_revision"), ids_end = offset_of("pose_utime");
-    const size_t waypoints = offset_of("num_waypoints") + 2U;
-    AISLE_ASSERT(ids_end - ids == 7U * 4U && size >= waypoints);
-    return aisle_crc32(aisle_crc32(0, bytes + waypoints, size - waypoints), bytes + ids, ids_end - ids);
+uint32_t aisle_release_certificate(uint32_t waypoints, const uint8_t *bytes) {
+    return aisle_crc32(waypoints, bytes + AISLE_PATH_AT_REVISION, AISLE_PATH_AT_POSE_UTIME - AISLE_PATH_AT_REVISION);
 }
 
 aisle_status aisle_path_encode(aisle_path_msg *path, uint8_t *bytes, size_t capacity, size_t *size) {
     aisle_status st = aisle_msg_encode(AISLE_MSG_PATH, path, bytes, capacity, size);
     if (st == AISLE_OK) {
-        path->certificate = (int32_t)aisle_release_certificate(bytes, *size);
-        aisle_msg_put_int32(bytes + offset_of("certificate"), path->certificate);
+        AISLE_ASSERT(*size >= AISLE_PATH_AT_WAYPOINTS);
+        uint32_t waypoints = aisle_crc32(0, bytes + AISLE_PATH_AT_WAYPOINTS, *size - AISLE_PATH_AT_WAYPOINTS);
+        path->certificate = (int32_t)aisle_release_certificate(waypoints, bytes);
+        aisle_msg_put_int32(bytes + AISLE_PATH_AT_CERTIFICATE, path->certificate);
     }
     return st;
 }
 
-// ---- crc of what is proved
-
-bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc) {
-    static const uint8_t zeros[8] = {0};
-    static const struct {
-        const char *name; // in the order of path_t
-        size_t size;
-    } open[] = {{"utime", 8}, {"valid_until_utime", 8}, {"work_units", 4}};
-    size_t at = 0;
-    *crc = 0;
-    for (size_t i = 0; i < sizeof open / sizeof open[0]; i++) {
-        size_t from = offset_of(open[i].name);
-        AISLE_ASSERT(from >= at);
-        if (bytes == NULL || size < from + open[i].size) {
-            return false;
-        }
-        *crc = aisle_crc32(*crc, bytes + at, from - at);
-        *crc = aisle_crc32(*crc, zeros, open[i].size);
-        at = from + open[i].size;
+void aisle_path_rehead(uint8_t *bytes, const aisle_path_msg *head, uint32_t waypoints) {
+    const int64_t first[] = {head->utime, head->boot_id};
+    const int32_t ids[] = {head->path_revision, head->query_id,     head->goal_list_id,    head->goal_list_revision,
+                           head->map_id,        head->map_revision, head->vehicle_revision};
+    const int64_t times[] = {head->pose_utime, head->obstacles_utime, head->t0_utime, head->valid_until_utime};
+    uint8_t *at = bytes + AISLE_PATH_AT_UTIME;
+    for (size_t i = 0; i < sizeof first / sizeof first[0]; i++, at += 8) {
+        aisle_msg_put_int64(at, first[i]);
     }
-    *crc = aisle_crc32(*crc, bytes + at, size - at);
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++, at += 4) {
+        aisle_msg_put_int32(at, ids[i]);
+    }
+    for (size_t i = 0; i < sizeof times / sizeof times[0]; i++, at += 8) {
+        aisle_msg_put_int64(at, times[i]);
+    }
+    AISLE_ASSERT(at == bytes + AISLE_PATH_AT_STATUS);
+    bytes[AISLE_PATH_AT_CACHED] = head->cached != 0 ? 1U : 0U;
+    aisle_msg_put_int32(bytes + AISLE_PATH_AT_WORK_UNITS, head->work_units);
+    aisle_msg_put_int32(bytes + AISLE_PATH_AT_CERTIFICATE, (int32_t)aisle_release_certificate(waypoints, bytes));
+}
+
+// ---- digests
+
+bool aisle_release_digest(const uint8_t *bytes, size_t size, uint64_t *stamp, uint64_t *path) {
+    uint8_t head[AISLE_PATH_AT_WAYPOINTS];
+    if (bytes == NULL || size < sizeof head) {
+        return false;
+    }
+    const uint64_t waypoints = aisle_digest(0, bytes + sizeof head, size - sizeof head);
+    memcpy(head, bytes, sizeof head);
+    memset(head + AISLE_PATH_AT_UTIME, 0, 8);
+    memset(head + AISLE_PATH_AT_VALID_UNTIL_UTIME, 0, 8);
+    memset(head + AISLE_PATH_AT_WORK_UNITS, 0, 4);
+    *stamp = aisle_digest(waypoints, head, sizeof head);
+    if (path != NULL) {
+        head[AISLE_PATH_AT_CACHED] = 0;
+        memset(head + AISLE_PATH_AT_CERTIFICATE, 0, 4);
+        *path = aisle_digest(waypoints, head + AISLE_PATH_AT_STATUS, sizeof head - AISLE_PATH_AT_STATUS);
+    }
     return true;
 }
 
 // ---- the way out
 
 static bool is_proved(const uint8_t *bytes, size_t size, const aisle_stamp *stamp) {
-    uint32_t crc;
+    uint64_t digest;
     if (stamp == NULL || stamp->size == 0 || (size_t)stamp->size != size) {
         return false;
     }
-    return aisle_release_crc(bytes, size, &crc) && crc == stamp->crc;
+    return aisle_release_digest(bytes, size, &digest, NULL) && digest == stamp->digest;
 }
 
 // A path_t of status NONE: nothing to drive; its few waypoints tell the reason.
 static bool is_revocation(const uint8_t *bytes, size_t size) {
-    size_t status = offset_of("status"), count = offset_of("num_waypoints");
+    const size_t status = AISLE_PATH_AT_STATUS, count = AISLE_PATH_AT_NUM_WAYPOINTS;
     if (bytes == NULL || aisle_msg_check(AISLE_MSG_PATH, bytes, size, NULL) != AISLE_OK) {
         return false;
     }

@@ -2,6 +2,8 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "base/crc32.h"
+#include "base/digest.h"
 #include "plan/verify_parts.h"
 #include "wire/codec.h"
 
@@ -35,8 +37,8 @@ static bool is_at_least_zero(float x) {
 
 static bool layout_stands(const aisle_verify *self) {
     const aisle_layout *layout = self->request.layout;
-    return aisle_layout_is_in_force(layout) && aisle_layout_map_id(layout) == self->map_id &&
-           aisle_layout_map_revision(layout) == self->map_revision;
+    return aisle_layout_is_in_force(layout) && aisle_layout_map_id(layout) == self->basis.map_id &&
+           aisle_layout_map_revision(layout) == self->basis.map_revision;
 }
 
 static bool counts_are_fit(const aisle_path_msg *path) {
@@ -53,21 +55,76 @@ static bool numbers_are_fit(const aisle_path_msg *path) {
            is_at_least_zero(path->planning_time);
 }
 
-static bool certificate_is_right(const aisle_verify *self) {
-    const aisle_path_msg *path = self->path;
-    return path->map_id == self->map_id && path->map_revision == self->map_revision &&
-           path->vehicle_revision == self->request.vehicle->revision &&
-           (uint32_t)path->certificate == aisle_release_certificate(self->request.bytes, self->request.size);
+static bool is_number(const uint8_t *at, int32_t value) {
+    uint8_t bytes[4];
+    aisle_msg_put_int32(bytes, value);
+    return memcmp(at, bytes, sizeof bytes) == 0;
+}
+
+// By the bytes as they stand.
+static bool certificate_is_right(const aisle_verify *self, uint32_t waypoints) {
+    const uint8_t *bytes = self->request.bytes;
+    return is_number(bytes + AISLE_PATH_AT_MAP_ID, self->basis.map_id) &&
+           is_number(bytes + AISLE_PATH_AT_MAP_ID + 4, self->basis.map_revision) &&
+           is_number(bytes + AISLE_PATH_AT_MAP_ID + 8, self->request.vehicle->revision) &&
+           is_number(bytes + AISLE_PATH_AT_CERTIFICATE, (int32_t)aisle_release_certificate(waypoints, bytes));
 }
 
 static aisle_verify_fault header_fault(aisle_verify *self) {
     const aisle_verify_request *request = &self->request;
-    if (!aisle_release_crc(request->bytes, request->size, &self->crc) ||
-        aisle_msg_decode(AISLE_MSG_PATH, request->bytes, request->size, self->path, NULL) != AISLE_OK ||
+    if (aisle_msg_decode(AISLE_MSG_PATH, request->bytes, request->size, self->path, NULL) != AISLE_OK ||
         !counts_are_fit(self->path) || !numbers_are_fit(self->path)) {
         return AISLE_VERIFY_DECODE;
     }
-    return certificate_is_right(self) ? AISLE_VERIFY_NONE : AISLE_VERIFY_CERTIFICATE;
+    const size_t head = AISLE_PATH_AT_WAYPOINTS;
+    self->basis.waypoints = aisle_crc32(0, request->bytes + head, request->size - head);
+    return certificate_is_right(self, self->basis.waypoints) ? AISLE_VERIFY_NONE : AISLE_VERIFY_CERTIFICATE;
+}
+
+// ---- the basis of the proof
+
+static uint64_t digest_of_given(const aisle_verify_request *request) {
+    uint8_t vehicle[AISLE_VEHICLE_CONTENT_BYTES];
+    const double start[3] = {request->start.x, request->start.y, request->start.theta};
+    uint64_t digest = aisle_digest(0, vehicle, aisle_vehicle_content(request->vehicle, vehicle));
+    digest = aisle_digest(digest, start, sizeof start);
+    for (uint32_t i = 0; i < request->num_goals; i++) {
+        const aisle_goal_msg *goal = &request->goals[i];
+        const double place[3] = {goal->x, goal->y, goal->theta};
+        const float rest[3] = {goal->tolerance_xy, goal->tolerance_theta, goal->dwell};
+        digest = aisle_digest(digest, &goal->id, sizeof goal->id);
+        digest = aisle_digest(digest, place, sizeof place);
+        digest = aisle_digest(digest, rest, sizeof rest);
+    }
+    return digest;
+}
+
+// False: the bytes are too short for a path.
+static bool take_basis(aisle_verify *self) {
+    const aisle_verify_request *request = &self->request;
+    aisle_proof_basis *basis = &self->basis;
+    if (!aisle_release_digest(request->bytes, request->size, &self->digest, &basis->path)) {
+        return false;
+    }
+    basis->given = digest_of_given(request);
+    basis->layout = aisle_layout_content(request->layout);
+    basis->size = (uint32_t)request->size;
+    return true;
+}
+
+static bool is_proved_already(aisle_verify *self) {
+    const aisle_proof_basis *then = self->request.basis, *now = &self->basis;
+    if (then == NULL || then->path != now->path || then->given != now->given || then->layout != now->layout ||
+        then->map_id != now->map_id || then->map_revision != now->map_revision || then->size != now->size) {
+        return false;
+    }
+    self->basis.waypoints = then->waypoints;
+    return self->request.bytes[AISLE_PATH_AT_CACHED] <= 1U && certificate_is_right(self, then->waypoints);
+}
+
+const aisle_proof_basis *aisle_verify_basis(const aisle_verify *self) {
+    AISLE_ASSERT(self->phase == AISLE_VERIFY_PHASE_DONE && self->fault == AISLE_VERIFY_NONE);
+    return &self->basis;
 }
 
 // ---- start and goals
@@ -177,6 +234,13 @@ static aisle_verify_fault sums_fault(const aisle_verify *self) {
 // ---- steps
 
 static aisle_status step_header(aisle_verify *self) {
+    if (!take_basis(self)) {
+        return fail(self, AISLE_VERIFY_DECODE, 0);
+    }
+    if (is_proved_already(self)) {
+        self->phase = AISLE_VERIFY_PHASE_DONE;
+        return AISLE_OK;
+    }
     aisle_verify_fault fault = header_fault(self);
     if (fault != AISLE_VERIFY_NONE) {
         return fail(self, fault, 0);
@@ -187,6 +251,16 @@ static aisle_status step_header(aisle_verify *self) {
 
 static void count_goal(aisle_verify *self, uint32_t i) {
     self->goals += has_flag(&self->path->waypoints[i], AISLE_WAYPOINT_GOAL) ? 1U : 0U;
+}
+
+// All proved; the bytes must still be the ones that were read.
+static aisle_status finish(aisle_verify *self) {
+    uint64_t digest;
+    if (!aisle_release_digest(self->request.bytes, self->request.size, &digest, NULL) || digest != self->digest) {
+        return fail(self, AISLE_VERIFY_DECODE, 0);
+    }
+    self->phase = AISLE_VERIFY_PHASE_DONE;
+    return AISLE_OK;
 }
 
 // Takes up the motion from the first piece; a lone waypoint is a place to stand.
@@ -217,16 +291,6 @@ static aisle_status step_waypoint(aisle_verify *self) {
     }
     begin_motion(self);
     return AISLE_BUSY;
-}
-
-// All proved; the bytes must still be the ones that were read.
-static aisle_status finish(aisle_verify *self) {
-    uint32_t crc;
-    if (!aisle_release_crc(self->request.bytes, self->request.size, &crc) || crc != self->crc) {
-        return fail(self, AISLE_VERIFY_DECODE, 0);
-    }
-    self->phase = AISLE_VERIFY_PHASE_DONE;
-    return AISLE_OK;
 }
 
 static aisle_status step_motion(aisle_verify *self) {
@@ -269,8 +333,8 @@ void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request,
     memset(self, 0, sizeof *self);
     self->request = *request;
     self->path = decoded;
-    self->map_id = aisle_layout_map_id(request->layout);
-    self->map_revision = aisle_layout_map_revision(request->layout);
+    self->basis.map_id = aisle_layout_map_id(request->layout);
+    self->basis.map_revision = aisle_layout_map_revision(request->layout);
     for (uint32_t i = 0; i < vehicle->n; i++) {
         self->lever = aisle_max(self->lever, aisle_vec2_length(vehicle->footprint[i]));
     }
@@ -290,7 +354,7 @@ aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spe
         *spent += 1;
     }
     if (status == AISLE_OK) {
-        *stamp = (aisle_stamp){.crc = self->crc, .size = (uint32_t)self->request.size};
+        *stamp = (aisle_stamp){.digest = self->digest, .size = (uint32_t)self->request.size};
     }
     return status;
 }

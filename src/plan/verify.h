@@ -52,6 +52,9 @@
 // - length, duration equal the waypoints' sums; 0 <= length_bound <= length; clearance_min not above any piece's;
 // - map and vehicle revisions are those proved against; certificate right.
 // Not proved: the waypoints' clearances, energy, risk and length_bound themselves; speed-limit and directed zones.
+// Again. What was proved once and is shown with the basis of that proof is not looked at again if nothing of the basis
+// has changed, for the verdict would be the same: only the digests are made anew (one pass over the bytes), and ids,
+// revisions and certificate are checked. A basis that does not fit changes nothing.
 // Memory: the caller's struct, stack of intervals of fixed depth. Time: O(intervals * obstacles near), sliced.
 #ifndef AISLE_PLAN_VERIFY_H
 #define AISLE_PLAN_VERIFY_H
@@ -65,6 +68,18 @@
 #define AISLE_VERIFY_EPSILON 1e-6 // m, for rounding
 #define AISLE_VERIFY_DEPTH 64     // of the interval stack; 29 halvings reach 1 mm from the longest arc
 
+// All that a proof's verdict is a function of, as digests. Only verify.c writes one. A path that is given a new head
+// (aisle_path_rehead()) and shown with the basis of its proof is proved by it if every part is the same.
+typedef struct aisle_proof_basis {
+    uint64_t path;   // digest of the waypoints and of the members from status on before them, as encoded; cached,
+                     // work_units and certificate taken as 0
+    uint64_t given;  // digest of start, goals and aisle_vehicle_content()
+    uint64_t layout; // aisle_layout_content()
+    int32_t map_id, map_revision;
+    uint32_t waypoints; // crc32 of them as encoded, for certificates
+    uint32_t size;      // bytes of the path; 0: nothing proved
+} aisle_proof_basis;
+
 typedef struct aisle_verify_request {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
@@ -73,6 +88,7 @@ typedef struct aisle_verify_request {
     aisle_pose2 start;           // where the motion must begin, within 1e-6
     const aisle_goal_msg *goals; // [num_goals] to be reached in this order, flags GOAL with their ids
     uint32_t num_goals;
+    const aisle_proof_basis *basis; // of an earlier proof of the same path; NULL: none
 } aisle_verify_request;
 
 typedef enum aisle_verify_fault {
@@ -96,8 +112,8 @@ typedef enum aisle_verify_fault {
 
 // What a proof leaves behind. Only verify.c writes one; release() checks it.
 typedef struct aisle_stamp {
-    uint32_t crc;  // of the proved bytes, the lease's two times and work_units taken as 0
-    uint32_t size; // of them; 0: nothing proved
+    uint64_t digest; // of the proved bytes, the lease's two times and work_units taken as 0
+    uint32_t size;   // of them; 0: nothing proved
 } aisle_stamp;
 
 typedef struct aisle_verify_piece { // from waypoint i-1 to i; verify_piece.c
@@ -143,13 +159,13 @@ typedef struct aisle_verify {
 
     // The verifier's own.
     aisle_verify_phase phase;
-    uint32_t at;    // waypoint or piece in hand
-    uint32_t goals; // reached before it
-    uint32_t crc;   // of the bytes at the start
-    int32_t map_id, map_revision;
-    double lever; // m, farthest footprint point from the origin
-    double s;     // m, sum of lengths so far
-    double along; // rad, direction of motion at the end of the last piece
+    uint32_t at;             // waypoint or piece in hand
+    uint32_t goals;          // reached before it
+    uint64_t digest;         // of the bytes at the start
+    aisle_proof_basis basis; // of what is being proved
+    double lever;            // m, farthest footprint point from the origin
+    double s;                // m, sum of lengths so far
+    double along;            // rad, direction of motion at the end of the last piece
     aisle_verify_piece piece;
     aisle_verify_motion motion;
 } aisle_verify;
@@ -164,6 +180,9 @@ void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request,
 // added to.
 // Further calls repeat the answer and cost nothing. However cut into steps, answer and counts are the same.
 aisle_status aisle_verify_step(aisle_verify *self, uint32_t units, uint32_t *spent, aisle_stamp *stamp);
+
+// After AISLE_OK: to be shown when the same path is to be proved again.
+const aisle_proof_basis *aisle_verify_basis(const aisle_verify *self);
 
 #define AISLE_RELEASE_TOLD_MAX 8 // waypoints of a refusal
 
@@ -181,4 +200,23 @@ uint32_t aisle_path_certificate(const aisle_path_msg *path);
 
 // Encodes a path_t with its certificate, which is written to *path, too. Answers as aisle_msg_encode().
 aisle_status aisle_path_encode(aisle_path_msg *path, uint8_t *bytes, size_t capacity, size_t *size);
+
+// Places in an encoded path_t.
+enum {
+    AISLE_PATH_AT_UTIME = 8,
+    AISLE_PATH_AT_REVISION = 24, // the seven ids and revisions follow one another
+    AISLE_PATH_AT_MAP_ID = 40,
+    AISLE_PATH_AT_POSE_UTIME = 52,
+    AISLE_PATH_AT_VALID_UNTIL_UTIME = 76,
+    AISLE_PATH_AT_STATUS = 84,
+    AISLE_PATH_AT_CACHED = 96,
+    AISLE_PATH_AT_WORK_UNITS = 97,
+    AISLE_PATH_AT_CERTIFICATE = 135,
+    AISLE_PATH_AT_NUM_WAYPOINTS = 139,
+    AISLE_PATH_AT_WAYPOINTS = 141
+};
+
+// Makes encoded bytes of a path_t the answer to another request: every member before status, cached and work_units
+// become head's, and the certificate is made for waypoints with this crc32. O(1).
+void aisle_path_rehead(uint8_t *bytes, const aisle_path_msg *head, uint32_t waypoints);
 #endif

@@ -48,9 +48,10 @@ void aisle_verify_motion_begin(aisle_verify *self);
 aisle_status aisle_verify_motion_step(aisle_verify *self);
 
 // ---- release.c
-// crc of a path_t with the lease's two times and work_units taken as 0. False: too short for one.
-bool aisle_release_crc(const uint8_t *bytes, size_t size, uint32_t *crc);
+// Digests of an encoded path_t, as aisle_stamp and as aisle_proof_basis.path have them (NULL: not wanted). One pass. False:
+// too short for a path_t.
+bool aisle_release_digest(const uint8_t *bytes, size_t size, uint64_t *stamp, uint64_t *path);
 
-// aisle_path_certificate() of the path_t these valid bytes encode, without decoding it.
-uint32_t aisle_release_certificate(const uint8_t *bytes, size_t size);
+// The certificate for the ids in these bytes and waypoints with this crc32.
+uint32_t aisle_release_certificate(uint32_t waypoints, const uint8_t *bytes);
 #endif

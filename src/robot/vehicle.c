@@ -183,6 +183,18 @@ aisle_convex aisle_vehicle_place(const aisle_vehicle *self, aisle_pose2 pose, do
     return (aisle_convex){out, self->n, self->radius + grow};
 }
 
+// From the radius on a vehicle is doubles alone, so no padding is among them.
+size_t aisle_vehicle_content(const aisle_vehicle *self, uint8_t *out) {
+    const size_t numbers_at = offsetof(aisle_vehicle, radius);
+    const size_t outline = self->n * sizeof self->footprint[0];
+    AISLE_ASSERT(self->n <= AISLE_SHAPE_VERTICES_MAX && (sizeof *self - numbers_at) % sizeof(double) == 0U);
+    out[0] = (uint8_t)self->drive;
+    out[1] = (uint8_t)self->n;
+    memcpy(out + 2U, self->footprint, outline);
+    memcpy(out + 2U + outline, (const uint8_t *)self + numbers_at, sizeof *self - numbers_at);
+    return 2U + outline + (sizeof *self - numbers_at);
+}
+
 bool aisle_vehicle_is_disc(const aisle_vehicle *self) {
     return self->n == 1;
 }

@@ -12,6 +12,7 @@
 #include "world/shape.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define AISLE_VEHICLE_SPEED_MAX 20.0  // m/s, forwards and backwards
@@ -61,6 +62,11 @@ aisle_status aisle_vehicle_from_msg(const aisle_vehicle_msg *msg, aisle_vehicle 
 // radius `radius` + grow; grow >= -radius (m). For |theta| <= AISLE_ANGLE_MAX a coordinate's error is at most 4e-15 *
 // (|x| + |y| + outer_radius) m. The view lives as long as out. O(n).
 aisle_convex aisle_vehicle_place(const aisle_vehicle *self, aisle_pose2 pose, double grow, aisle_vec2 *out);
+
+// What a vehicle is but for its revision, as bytes: equal for equal bodies and limits, whatever padding holds. Writes at
+// most AISLE_VEHICLE_CONTENT_BYTES and returns how many. O(n).
+#define AISLE_VEHICLE_CONTENT_BYTES sizeof(aisle_vehicle)
+size_t aisle_vehicle_content(const aisle_vehicle *self, uint8_t *out);
 
 // True if every heading covers the same ground (a disc about the origin).
 bool aisle_vehicle_is_disc(const aisle_vehicle *self);

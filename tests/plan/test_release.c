@@ -75,11 +75,11 @@ static void test_without_a_stamp_nothing_to_drive_leaves(void) {
     aisle_stamp right = stamp;
     stamp = (aisle_stamp){0, 0};
     assert_refused();
-    stamp = (aisle_stamp){right.crc, 0};
+    stamp = (aisle_stamp){right.digest, 0};
     assert_refused();
-    stamp = (aisle_stamp){right.crc ^ 1U, right.size};
+    stamp = (aisle_stamp){right.digest ^ 1U, right.size};
     assert_refused();
-    stamp = (aisle_stamp){right.crc, right.size + 1U};
+    stamp = (aisle_stamp){right.digest, right.size + 1U};
     assert_refused();
     event = untouched;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &event));
@@ -145,8 +145,63 @@ static void test_the_certificate_is_the_crc_of_encoded_waypoints_and_revisions(v
     TEST_ASSERT_EQUAL(AISLE_ERR_CAPACITY, aisle_path_encode(&path, bytes, path_size - 1, &size));
 }
 
+static void test_places_in_the_bytes_are_the_codec_s(void) {
+    static const struct {
+        const char *name;
+        size_t at;
+    } places[] = {{"utime", AISLE_PATH_AT_UTIME},
+                  {"path_revision", AISLE_PATH_AT_REVISION},
+                  {"map_id", AISLE_PATH_AT_MAP_ID},
+                  {"map_revision", AISLE_PATH_AT_MAP_ID + 4},
+                  {"vehicle_revision", AISLE_PATH_AT_MAP_ID + 8},
+                  {"pose_utime", AISLE_PATH_AT_POSE_UTIME},
+                  {"valid_until_utime", AISLE_PATH_AT_VALID_UNTIL_UTIME},
+                  {"status", AISLE_PATH_AT_STATUS},
+                  {"cached", AISLE_PATH_AT_CACHED},
+                  {"work_units", AISLE_PATH_AT_WORK_UNITS},
+                  {"certificate", AISLE_PATH_AT_CERTIFICATE},
+                  {"num_waypoints", AISLE_PATH_AT_NUM_WAYPOINTS},
+                  {"waypoints", AISLE_PATH_AT_WAYPOINTS}};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        size_t offset = 0;
+        TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, places[i].name, &offset));
+        TEST_ASSERT_EQUAL_size_t(offset, places[i].at);
+    }
+}
+
+static void test_a_new_head_is_all_that_differs(void) {
+    static aisle_path_msg other;
+    other = path;
+    other.utime = -1;
+    other.boot_id = 2;
+    other.path_revision = 3;
+    other.query_id = 4;
+    other.goal_list_id = 5;
+    other.goal_list_revision = 6;
+    other.map_id = 7;
+    other.map_revision = 8;
+    other.vehicle_revision = 9;
+    other.pose_utime = 10;
+    other.obstacles_utime = 11;
+    other.t0_utime = 12;
+    other.valid_until_utime = 13;
+    other.cached = 1;
+    other.work_units = 14;
+    const uint32_t waypoints =
+        aisle_crc32(0, path_bytes + AISLE_PATH_AT_WAYPOINTS, path_size - AISLE_PATH_AT_WAYPOINTS);
+    aisle_path_rehead(path_bytes, &other, waypoints);
+    uint8_t bytes[4096];
+    size_t size = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_path_encode(&other, bytes, sizeof bytes, &size));
+    TEST_ASSERT_EQUAL_size_t(size, path_size);
+    TEST_ASSERT_EQUAL_MEMORY(bytes, path_bytes, size);
+    assert_refused(); // its stamp was for the old head
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_places_in_the_bytes_are_the_codec_s);
+    RUN_TEST(test_a_new_head_is_all_that_differs);
     RUN_TEST(test_the_bytes_that_were_proved_leave);
     RUN_TEST(test_a_renewed_lease_leaves);
     RUN_TEST(test_any_other_byte_changed_stays);

@@ -388,8 +388,120 @@ static void test_the_answer_is_repeated_and_costs_nothing(void) {
     TEST_ASSERT_EQUAL_UINT32(0, stamp.size);
 }
 
+// ---- proved once, shown again
+
+static aisle_proof_basis basis;
+
+// Proves the path and gives it a new head.
+static aisle_verify_request proved_once(void) {
+    aisle_verify_request request = request_of_three();
+    TEST_ASSERT_EQUAL(AISLE_OK, verify_request(&request, UINT32_MAX));
+    basis = *aisle_verify_basis(&verify);
+    path.query_id = 99;
+    path.cached = 1;
+    path.work_units = 5;
+    aisle_path_rehead(path_bytes, &path, basis.waypoints);
+    request.basis = &basis;
+    return request;
+}
+
+static bool is_taken_on_trust(const aisle_verify_request *request) {
+    TEST_ASSERT_EQUAL(AISLE_OK, verify_request(request, 1));
+    return verify.intervals == 0;
+}
+
+static void test_a_path_shown_with_the_basis_of_its_proof_is_proved_at_once(void) {
+    aisle_verify_request request = proved_once();
+    aisle_event event;
+    TEST_ASSERT_TRUE(is_taken_on_trust(&request));
+    TEST_ASSERT_EQUAL_UINT32(1, spent);
+    TEST_ASSERT_EQUAL_MEMORY(&basis, aisle_verify_basis(&verify), sizeof basis);
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, &event));
+    request.basis = NULL;
+    TEST_ASSERT_FALSE(is_taken_on_trust(&request));
+}
+
+static void test_a_basis_of_anything_else_spares_nothing(void) {
+    aisle_verify_request request = proved_once();
+    const aisle_proof_basis right = basis;
+    for (int i = 0; i < 6; i++) {
+        basis = right;
+        basis.path ^= i == 0 ? 1U : 0U;
+        basis.given ^= i == 1 ? 1U : 0U;
+        basis.layout ^= i == 2 ? 1U : 0U;
+        basis.map_id += i == 3;
+        basis.map_revision += i == 4;
+        basis.size += i == 5;
+        TEST_ASSERT_FALSE(is_taken_on_trust(&request));
+    }
+    basis = right;
+    basis.waypoints ^= 1U; // the certificate is not the one it would have
+    TEST_ASSERT_FALSE(is_taken_on_trust(&request));
+}
+
+static void test_a_changed_input_is_proved_anew(void) {
+    aisle_verify_request request = proved_once();
+    request.start.x += 1e-8;
+    TEST_ASSERT_FALSE(is_taken_on_trust(&request));
+    request.start.x -= 1e-8;
+    goals[1].tolerance_xy = 0.06F;
+    TEST_ASSERT_FALSE(is_taken_on_trust(&request));
+    goals[1].tolerance_xy = 0.0F;
+    vehicle.v_max += 1e-6;
+    TEST_ASSERT_FALSE(is_taken_on_trust(&request));
+    vehicle.v_max -= 1e-6;
+    goals[2].x += 1.0;
+    (void)verify_request(&request, UINT32_MAX);
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_GOAL, verify.fault);
+    goals[2].x -= 1.0;
+    vehicle.margin = 1.0;
+    (void)verify_request(&request, UINT32_MAX);
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_COLLISION, verify.fault);
+}
+
+// Though the basis would let it pass: revisions and certificate are looked at again.
+static void test_a_basis_excuses_no_wrong_revision(void) {
+    aisle_verify_request request = proved_once();
+    const int32_t map_id = path.map_id, map_revision = path.map_revision, vehicle_revision = path.vehicle_revision;
+    for (int i = 0; i < 3; i++) {
+        path.map_id = map_id + (i == 0);
+        path.map_revision = map_revision + (i == 1);
+        path.vehicle_revision = vehicle_revision + (i == 2);
+        aisle_path_rehead(path_bytes, &path, basis.waypoints);
+        (void)verify_request(&request, UINT32_MAX);
+        TEST_ASSERT_EQUAL(AISLE_VERIFY_CERTIFICATE, verify.fault);
+    }
+    path.map_id = map_id;
+    path.map_revision = map_revision;
+    path.vehicle_revision = vehicle_revision;
+    aisle_path_rehead(path_bytes, &path, basis.waypoints);
+    TEST_ASSERT_TRUE(is_taken_on_trust(&request));
+}
+
+static void test_any_bit_turned_over_is_refused_whatever_the_basis(void) {
+    aisle_verify_request request = proved_once();
+    for (size_t i = 0; i < path_size; i++) {
+        bool lease = (i >= AISLE_PATH_AT_UTIME && i < AISLE_PATH_AT_UTIME + 8) ||
+                     (i >= AISLE_PATH_AT_VALID_UNTIL_UTIME && i < AISLE_PATH_AT_VALID_UNTIL_UTIME + 8) ||
+                     (i >= AISLE_PATH_AT_WORK_UNITS && i < AISLE_PATH_AT_WORK_UNITS + 4);
+        path_bytes[i] ^= 0x04U;
+        aisle_status st = verify_request(&request, UINT32_MAX);
+        if (i >= AISLE_PATH_AT_WAYPOINTS) {
+            TEST_ASSERT_EQUAL(AISLE_ERR_DATA, st);
+        } else if (st == AISLE_OK && !lease) {
+            TEST_ASSERT_TRUE(verify.intervals > 0 || i < AISLE_PATH_AT_STATUS); // by the whole proof, or an id
+        }
+        path_bytes[i] ^= 0x04U;
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_a_path_shown_with_the_basis_of_its_proof_is_proved_at_once);
+    RUN_TEST(test_a_basis_of_anything_else_spares_nothing);
+    RUN_TEST(test_a_changed_input_is_proved_anew);
+    RUN_TEST(test_a_basis_excuses_no_wrong_revision);
+    RUN_TEST(test_any_bit_turned_over_is_refused_whatever_the_basis);
     RUN_TEST(test_every_truncation_is_refused);
     RUN_TEST(test_bytes_left_over_are_refused);
     RUN_TEST(test_not_a_number_anywhere_is_refused);

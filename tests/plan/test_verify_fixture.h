@@ -442,7 +442,7 @@ UNUSED_OK aisle_status verify_request(const aisle_verify_request *request, uint3
         stamp = (aisle_stamp){1, 1};
         status = aisle_verify_step(&verify, units, &spent, &stamp);
         TEST_ASSERT_TRUE(status == AISLE_BUSY ? spent - before == units : spent - before <= units);
-        TEST_ASSERT_TRUE(status == AISLE_OK ? stamp.size > 0 : stamp.size == 0 && stamp.crc == 0);
+        TEST_ASSERT_TRUE(status == AISLE_OK ? stamp.size > 0 : stamp.size == 0 && stamp.digest == 0);
     } while (status == AISLE_BUSY);
     TEST_ASSERT_TRUE(status == AISLE_OK ? verify.fault == AISLE_VERIFY_NONE
                                         : status == AISLE_ERR_DATA && verify.fault != AISLE_VERIFY_NONE);

@@ -461,8 +461,44 @@ static void test_a_disc_is_placed_the_same_for_every_heading(void) {
     }
 }
 
+static size_t content(uint8_t *out) {
+    take();
+    memset(out, 0, AISLE_VEHICLE_CONTENT_BYTES);
+    return aisle_vehicle_content(&vehicle, out);
+}
+
+static void test_content_tells_every_member_but_the_revision(void) {
+    uint8_t first[AISLE_VEHICLE_CONTENT_BYTES], other[AISLE_VEHICLE_CONTENT_BYTES];
+    set_box(-0.5, -0.4, 0.6, 0.4);
+    msg.footprint_radius = 0.1F;
+    const size_t size = content(first);
+    msg.vehicle_revision = 9;
+    msg.utime = 1234;
+    memset(&vehicle, 0xA5, sizeof vehicle); // padding
+    TEST_ASSERT_EQUAL_size_t(size, content(other));
+    TEST_ASSERT_EQUAL_MEMORY(first, other, size);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        float *number = (float *)((uint8_t *)&msg + rows[i].in);
+        *number = rows[i].usual > 0.0F ? 0.9F * rows[i].usual : 1.0F;
+        TEST_ASSERT_EQUAL_size_t(size, content(other));
+        TEST_ASSERT_TRUE_MESSAGE(memcmp(first, other, size) != 0, rows[i].name);
+        *number = 0.0F;
+    }
+    msg.drive = AISLE_VEHICLE_OMNI;
+    (void)content(other);
+    TEST_ASSERT_TRUE(memcmp(first, other, size) != 0);
+    msg.drive = AISLE_VEHICLE_DIFFERENTIAL;
+    set_box(-0.5, -0.4, 0.6, 0.41);
+    (void)content(other);
+    TEST_ASSERT_TRUE(memcmp(first, other, size) != 0);
+    const double three[3][2] = {{-0.5, -0.4}, {0.6, -0.4}, {0.6, 0.4}};
+    set_footprint(three, 3);
+    TEST_ASSERT_EQUAL_size_t(size - sizeof(aisle_vec2), content(other));
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_content_tells_every_member_but_the_revision);
     RUN_TEST(test_zeros_give_every_default);
     RUN_TEST(test_a_default_given_by_name_and_one_left_zero_give_the_same_bits);
     RUN_TEST(test_every_number_given_arrives_in_its_own_place_up_to_its_limit);
