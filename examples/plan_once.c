@@ -24,7 +24,8 @@ void aisle_assert_failed(const char *file, int line, const char *condition) { //
 
 int main(void) {
     const aisle_config config = {
-        .limits = {.cells = 65536, .polygons = 16, .vertices = 64, .open_nodes = 8192, .requests = 1},
+        .limits =
+            {.cells = 65536, .polygons = 16, .vertices = 64, .open_nodes = 8192, .requests = 1, .cached_paths = 1},
         .vehicle = {.footprint_radius = 0.3F, .margin = 0.1F},
         .has_vehicle = true};
     const aisle_query_msg query = {.query_id = 7,

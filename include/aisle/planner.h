@@ -21,8 +21,13 @@
 // Missions: the newest goal list is the mission. Its path is leased for AISLE_LEASE_US and sent again every
 // AISLE_LEASE_RESEND_US while the pose is fresh, localized and on the layout's map, no moving obstacle is reported and
 // no HOLD is on; a path found meanwhile is kept back until then. A list refused for want of a pose or for a moving
-// obstacle is planned again when that is over, every list for a new layout or vehicle, each from the newest pose. What
+// obstacle is planned again when that is over, every list for a new layout or vehicle, each from the newest pose; the path
+// that was out is withdrawn before (MAP_MISMATCH, CONFLICT with the vehicle's revision), unless it is the same vehicle by
+// all but its revision: then the path goes on under that one. What
 // names a list stays known when it is reached or cancelled: sent again it is a duplicate and moves nobody.
+// Memory of answers: what was answered is remembered by what was asked (start, goals, options, vehicle, layout; no ids or
+// times of messages) and answered again with path_msg.cached set, after a proof on the layout in force. A changed layout
+// keeps what it does not touch (plan/cache.h says by what rule, and what that promises of its length).
 // Threads: one planner, one thread at a time. Planners share nothing.
 #ifndef AISLE_PLANNER_H
 #define AISLE_PLANNER_H
@@ -54,6 +59,8 @@ typedef struct aisle_config {
     int32_t work_units;        // budget of a request that names none; 0 = AISLE_WORK_UNITS_DEFAULT
     aisle_vehicle_msg vehicle; // the vehicle until a message brings one; used if has_vehicle
     bool has_vehicle;
+    bool
+        forgetful; // remember no answers: every request is planned anew (for benches; the memory is there all the same)
 } aisle_config;
 
 typedef enum aisle_input_kind {
@@ -115,6 +122,11 @@ typedef enum aisle_counter {
     AISLE_COUNTER_OPEN_NODES_MAX,   // high-water mark of the grid search's open list
     AISLE_COUNTER_CCD_CALLS,        // narrow-phase tests that separating axes left to libccd
     AISLE_COUNTER_CCD_SUPPORT_MAX,  // most support calls of one of them
+    AISLE_COUNTER_CACHE_HITS,       // answers that were remembered and proved again
+    AISLE_COUNTER_CACHE_MISSES,     // requests planned since no answer was remembered, or a spoiled one
+    AISLE_COUNTER_CACHE_KEPT,       // answers remembered that a changed layout does not touch
+    AISLE_COUNTER_CACHE_DROPPED,    // and that it does, or may
+    AISLE_COUNTER_CACHE_SPOILED,    // answers remembered whose bytes had changed or whose proof failed
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

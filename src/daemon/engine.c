@@ -25,7 +25,8 @@ aisle_status aisle_engine_start(aisle_engine *self, const aisle_settings *settin
                            .boot_id = boot_id,
                            .work_units = settings->work_units,
                            .vehicle = settings->vehicle,
-                           .has_vehicle = true};
+                           .has_vehicle = true,
+                           .forgetful = !settings->remember};
     self->planner_bytes = aisle_planner_memsize(&config.limits);
     self->extra_bytes = extra;
     if (self->planner_bytes == 0) {

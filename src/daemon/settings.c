@@ -37,11 +37,13 @@ static const key keys[] = {
     {"bus", "queue_bytes", AT(queue_bytes), 262144, 67108864, " bytes", KIND_WHOLE, false},
     {"planner", "work_units", AT(work_units), 1000, 2000000000, "", KIND_WHOLE, true},
     {"planner", "work_units_per_slice", AT(work_units_per_slice), 0, 1000000, " (0 = chosen)", KIND_WHOLE, false},
+    {"planner", "remember", AT(remember), 0, 0, "", KIND_BOOL, false},
     LIMIT(cells, 4096, AISLE_LIMITS_CELLS_MAX),
     LIMIT(polygons, 1, 4096),
     LIMIT(vertices, 3, 65536),
     LIMIT(open_nodes, 1024, 4194304),
     LIMIT(requests, 1, 64),
+    LIMIT(cached_paths, 1, 1024),
     {"vehicle", "vehicle_revision", AT(vehicle.vehicle_revision), 0, 2147483647, "", KIND_WHOLE, false},
     {"vehicle", "drive", AT(vehicle.drive), 0, 0, "", KIND_DRIVE, false},
     {"vehicle", "footprint", 0, 0, 0, "", KIND_FOOTPRINT, false},
@@ -91,6 +93,7 @@ void aisle_settings_defaults(aisle_settings *self) {
     memcpy(self->prefix, "AISLE", sizeof "AISLE");
     self->queue_bytes = 4194304;
     self->work_units = AISLE_WORK_UNITS_DEFAULT;
+    self->remember = true;
     self->status_hz = 5.0F;
     self->diag_hz = 1.0F;
     static const double footprint[4][2] = {{-0.5, -0.35}, {0.5, -0.35}, {0.5, 0.35}, {-0.5, 0.35}};

@@ -24,6 +24,7 @@ typedef struct aisle_settings {
     uint32_t queue_bytes;                       // of messages that must not be lost and wait for the planner
     int32_t work_units;                         // budget of a request that names none
     uint32_t work_units_per_slice;              // 0 = as many as take about 2 ms, measured as it goes
+    bool remember;                              // answers: else every request is planned anew
     aisle_limits limits;                        // 0 = default, as in limits.h
     aisle_vehicle_msg vehicle;                  // the vehicle until a message brings one
     float status_hz, diag_hz;

@@ -23,7 +23,8 @@ static bool resolve_limits(aisle_limits *limits) {
            resolve(&limits->polygons, AISLE_LIMITS_POLYGONS_DEFAULT, 1U, 4096U) &&
            resolve(&limits->vertices, AISLE_LIMITS_VERTICES_DEFAULT, 3U, 65536U) &&
            resolve(&limits->open_nodes, AISLE_LIMITS_OPEN_NODES_DEFAULT, 1024U, 4194304U) &&
-           resolve(&limits->requests, AISLE_LIMITS_REQUESTS_DEFAULT, 1U, 64U);
+           resolve(&limits->requests, AISLE_LIMITS_REQUESTS_DEFAULT, 1U, 64U) &&
+           resolve(&limits->cached_paths, AISLE_LIMITS_CACHED_PATHS_DEFAULT, 1U, 1024U);
 }
 
 // Closes a row of the memory table: everything taken since the last one.
@@ -54,6 +55,8 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits, stan
     row(self, arena, &from, "layout and grid");
     aisle_route_carve(self->route, arena, limits);
     row(self, arena, &from, "search and paths");
+    aisle_route_carve_cache(self->route, arena, limits);
+    row(self, arena, &from, "remembered paths");
     self->queue = (aisle_request *)aisle_arena_take(arena, limits->requests, sizeof(aisle_request));
     row(self, arena, &from, "requests");
     self->vehicle_msg = (aisle_vehicle_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_vehicle_msg));
@@ -105,6 +108,7 @@ aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *c
     self->has_vehicle = config->has_vehicle;
     self->vehicle = vehicle;
     *self->vehicle_msg = config->vehicle;
+    self->route->forgetful = config->forgetful;
     self->route->budget_default = config->work_units > 0 ? (uint32_t)config->work_units : AISLE_WORK_UNITS_DEFAULT;
     *planner = self;
     return AISLE_OK;
@@ -160,6 +164,16 @@ static void begin_next(aisle_planner *self) {
     }
 }
 
+static void count_cache(aisle_planner *self) {
+    const aisle_cache *cache = &self->route->cache;
+    int64_t *counters = self->counters;
+    counters[AISLE_COUNTER_CACHE_HITS] = cache->hits;
+    counters[AISLE_COUNTER_CACHE_MISSES] = cache->misses;
+    counters[AISLE_COUNTER_CACHE_KEPT] = cache->kept;
+    counters[AISLE_COUNTER_CACHE_DROPPED] = cache->dropped;
+    counters[AISLE_COUNTER_CACHE_SPOILED] = cache->spoiled;
+}
+
 static void count_route(aisle_planner *self) {
     const aisle_route *route = self->route;
     int64_t *counters = self->counters;
@@ -169,6 +183,7 @@ static void count_route(aisle_planner *self) {
     counters[AISLE_COUNTER_VERIFY_INTERVALS] += route->intervals;
     counters[AISLE_COUNTER_WORK_UNITS] += route->spent;
     counters[AISLE_COUNTER_OPEN_NODES_MAX] = route->seed.search.open_used_max;
+    count_cache(self);
     counters[AISLE_COUNTER_CCD_CALLS] += route->collide.calls;
     if (route->collide.support_max > counters[AISLE_COUNTER_CCD_SUPPORT_MAX]) {
         counters[AISLE_COUNTER_CCD_SUPPORT_MAX] = route->collide.support_max;
@@ -202,8 +217,14 @@ static void step_route(aisle_planner *self, uint32_t units) {
     }
 }
 
+// Builds the layout, then holds the answers remembered against it.
 static void step_layout(aisle_planner *self, uint32_t units) {
-    if (aisle_layout_build(self->layout, units) == AISLE_OK) {
+    if (!aisle_layout_is_in_force(self->layout)) {
+        if (aisle_layout_build(self->layout, units) == AISLE_OK) {
+            aisle_route_layout_changed(self->route, self->layout);
+        }
+    } else if (aisle_route_step_change(self->route, units) == AISLE_OK) {
+        count_cache(self);
         self->building = false;
         self->counters[AISLE_COUNTER_LAYOUTS]++;
         aisle_planner_replan(self);

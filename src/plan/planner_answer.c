@@ -55,21 +55,23 @@ void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, con
 
 // Renewing the lease changes nothing else, so the proof of the bytes stays good.
 static void put_lease(aisle_planner *self, aisle_proof *proof) {
-    size_t utime = 0;
-    size_t valid = 0;
-    bool found = aisle_msg_field_offset(AISLE_MSG_PATH, "utime", &utime) &&
-                 aisle_msg_field_offset(AISLE_MSG_PATH, "valid_until_utime", &valid);
-    AISLE_ASSERT(found);
-    aisle_msg_put_int64(proof->bytes + utime, self->now_us);
-    aisle_msg_put_int64(proof->bytes + valid, self->now_us + AISLE_LEASE_US);
+    aisle_msg_put_int64(proof->bytes + AISLE_PATH_AT_UTIME, self->now_us);
+    aisle_msg_put_int64(proof->bytes + AISLE_PATH_AT_VALID_UNTIL_UTIME, self->now_us + AISLE_LEASE_US);
 }
 
 // Work is spent after the proof, too: the answer tells all of it.
 static void put_work_units(const aisle_proof *proof, uint32_t spent) {
-    size_t at = 0;
-    bool found = aisle_msg_field_offset(AISLE_MSG_PATH, "work_units", &at);
-    AISLE_ASSERT(found);
-    aisle_msg_put_int32(proof->bytes + at, (int32_t)spent);
+    aisle_msg_put_int32(proof->bytes + AISLE_PATH_AT_WORK_UNITS, (int32_t)spent);
+}
+
+// The mission's new path leaves, or is kept back until it may be driven.
+static void send_or_hold(aisle_planner *self) {
+    int32_t id;
+    if (self->held || aisle_planner_lease_hindrance(self, self->now_us, &id) != 0) {
+        self->lease_due_us = self->now_us;
+    } else {
+        aisle_planner_renew(self);
+    }
 }
 
 void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
@@ -83,17 +85,13 @@ void aisle_planner_publish(aisle_planner *self, const aisle_request *request, co
     memcpy(mission->current.bytes, proof->bytes, proof->size);
     mission->current.size = proof->size;
     mission->current.stamp = proof->stamp;
+    mission->current.basis = proof->basis;
     mission->has_path = true;
     mission->replan = false;
     aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, mission->path, NULL);
     AISLE_ASSERT(st == AISLE_OK);
     self->path_revision = mission->path->path_revision;
-    int32_t id;
-    if (self->held || aisle_planner_lease_hindrance(self, self->now_us, &id) != 0) {
-        self->lease_due_us = self->now_us; // kept back until it may be driven
-    } else {
-        aisle_planner_renew(self);
-    }
+    send_or_hold(self);
 }
 
 void aisle_planner_renew(aisle_planner *self) {
@@ -101,6 +99,39 @@ void aisle_planner_renew(aisle_planner *self) {
     put_lease(self, &mission->current);
     queue(self, AISLE_EVENT_PATH, mission->current.bytes, mission->current.size, &mission->current.stamp);
     self->lease_due_us = self->now_us + AISLE_LEASE_RESEND_US;
+}
+
+// The verifier's answer to the mission's path as it lies there, by its earlier proof alone.
+static bool is_proved_still(aisle_planner *self) {
+    aisle_mission *mission = &self->mission;
+    aisle_route *route = self->route; // idle: its verifier is free
+    const aisle_goal_msg *start = &mission->request.start;
+    const aisle_verify_request request = {.layout = self->layout,
+                                          .vehicle = &self->vehicle,
+                                          .bytes = mission->current.bytes,
+                                          .size = mission->current.size,
+                                          .start = {start->x, start->y, start->theta},
+                                          .goals = mission->request.goals,
+                                          .num_goals = (uint32_t)mission->request.num_goals,
+                                          .basis = &mission->current.basis};
+    uint32_t spent = 0;
+    aisle_verify_start(&route->verify, &request, route->decoded);
+    return aisle_verify_step(&route->verify, 1U, &spent, &mission->current.stamp) == AISLE_OK;
+}
+
+bool aisle_planner_reprove(aisle_planner *self) {
+    aisle_mission *mission = &self->mission;
+    AISLE_ASSERT(mission->has_path && !aisle_planner_is_busy(self));
+    aisle_path_msg *path = mission->path;
+    path->path_revision = self->path_revision + 1;
+    path->vehicle_revision = self->vehicle.revision;
+    aisle_path_rehead(mission->current.bytes, path, mission->current.basis.waypoints);
+    if (!is_proved_still(self)) {
+        return false;
+    }
+    self->path_revision = path->path_revision;
+    send_or_hold(self);
+    return true;
 }
 
 void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id) {

@@ -70,6 +70,13 @@ static bool same_vehicle(const aisle_vehicle_msg *a, const aisle_vehicle_msg *b)
     return size[0] == size[1] && memcmp(bytes[0] + utime, bytes[1] + utime, size[0] - utime) == 0;
 }
 
+// Same body and limits by what they mean, whatever the revision?
+static bool is_same_body(const aisle_vehicle *a, const aisle_vehicle *b) {
+    uint8_t bytes[2][AISLE_VEHICLE_CONTENT_BYTES];
+    const size_t size = aisle_vehicle_content(a, bytes[0]);
+    return size == aisle_vehicle_content(b, bytes[1]) && memcmp(bytes[0], bytes[1], size) == 0;
+}
+
 static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *msg) {
     if (aisle_planner_is_busy(self)) {
         return AISLE_BUSY;
@@ -83,12 +90,17 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
                    : aisle_planner_reject(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
     }
     aisle_refusal why = {0, 0, 0.0F};
+    const aisle_vehicle before = self->vehicle;
     if (aisle_vehicle_from_msg(msg, &self->vehicle, &why) != AISLE_OK) {
         return aisle_planner_reject(self, why.cause, why.id);
     }
+    const bool is_same = self->has_vehicle && is_same_body(&before, &self->vehicle);
     *self->vehicle_msg = *msg;
     self->has_vehicle = true;
     self->vehicle_sent = true;
+    if (is_same && self->mission.has_path && aisle_planner_reprove(self)) {
+        return AISLE_OK;
+    }
     aisle_planner_revoke(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
     aisle_planner_replan(self);
     return AISLE_OK;

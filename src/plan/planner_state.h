@@ -85,6 +85,9 @@ void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, con
 void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);
 // Queues the mission's path once more with its lease renewed.
 void aisle_planner_renew(aisle_planner *self);
+// The vehicle's revision has changed and nothing else: the mission's path goes on under the new one, as the next path
+// revision, on the strength of its proof. False: that does not stand, nothing may be sent.
+bool aisle_planner_reprove(aisle_planner *self);
 // Ends the mission's path, if it has one.
 void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id);
 

@@ -25,6 +25,10 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
     self->spare.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
 }
 
+void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+    aisle_cache_carve(&self->cache, arena, limits);
+}
+
 // Header of the answer: everything but waypoints and sums.
 static void copy_head(aisle_route *self, const aisle_path_msg *head) {
     aisle_path_msg *path = self->path;
@@ -57,7 +61,8 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->layout = layout;
     self->vehicle = vehicle;
     self->request = *request;
-    self->stage = AISLE_ROUTE_CHECK;
+    self->stage = AISLE_ROUTE_RECALL;
+    self->recalled = AISLE_CACHE_NONE;
     self->leg = 0;
     self->point_count = 0;
     self->best.ready = self->best.told = false;
@@ -80,6 +85,10 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
 
 static aisle_status step_stage(aisle_route *self, uint32_t units) {
     switch (self->stage) {
+    case AISLE_ROUTE_RECALL:
+        return aisle_route_recall(self);
+    case AISLE_ROUTE_REPROVE:
+        return aisle_route_step_reprove(self, units);
     case AISLE_ROUTE_CHECK:
         return aisle_route_check(self);
     case AISLE_ROUTE_TANGENT:
@@ -134,6 +143,9 @@ aisle_status aisle_route_step(aisle_route *self, uint32_t units) {
         uint32_t left =
             self->budget - self->spent < until - self->spent ? self->budget - self->spent : until - self->spent;
         st = step_stage(self, left);
+    }
+    if (st == AISLE_OK) {
+        aisle_route_remember(self);
     }
     return st;
 }

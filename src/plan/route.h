@@ -1,5 +1,7 @@
 // route.h - one request from start to proved path or reason: the AUTO pipeline. Level 4.
 //
+// RECALL an answer to the same question (cache.h), give it this request's head and REPROVE it: the answer, flag `cached`
+// set. Spoiled or disproved it is forgotten and the request planned anew. Every answer planned is remembered.
 // CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move), then one way after the other, as
 // route_ways.c lists them for the objective; the best proved path by the objective's own measure is the answer:
 //     SHORTEST   length                            SHORT
@@ -29,6 +31,7 @@
 #ifndef AISLE_PLAN_ROUTE_H
 #define AISLE_PLAN_ROUTE_H
 
+#include "plan/cache.h"
 #include "plan/compose.h"
 #include "plan/leg.h"
 #include "plan/nearest.h"
@@ -45,7 +48,7 @@
 #define AISLE_ROUTE_POINTS 2048U                                // of all legs' seed polylines
 #define AISLE_ROUTE_STRIDE 0.1                                  // m
 #define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
-#define AISLE_ROUTE_BYTES 60000U                                // of an encoded path_t: 54 a waypoint and the head
+#define AISLE_ROUTE_BYTES AISLE_CACHE_PATH_MAX                  // of an encoded path_t: 54 a waypoint and the head
 
 typedef struct aisle_request { // a query, or a goal list with the pose it starts from
     bool is_query;
@@ -61,6 +64,7 @@ typedef struct aisle_proof { // an encoded path and what it is worth
     uint8_t *bytes;          // [AISLE_ROUTE_BYTES]
     size_t size;
     aisle_stamp stamp;
+    aisle_proof_basis basis;
     double value; // by the request's objective, less is better
     bool ready;
     bool told; // announced before the end
@@ -81,6 +85,8 @@ typedef struct aisle_way {
 
 typedef enum aisle_route_stage {
     AISLE_ROUTE_IDLE,
+    AISLE_ROUTE_RECALL,
+    AISLE_ROUTE_REPROVE, // what was recalled
     AISLE_ROUTE_CHECK,
     AISLE_ROUTE_TANGENT,
     AISLE_ROUTE_NEAREST,
@@ -106,6 +112,9 @@ typedef struct aisle_route {
     uint32_t way_index;
     aisle_objective objective; // of the way
     double room;               // m, that its tangent searches keep to obstacles
+    aisle_cache cache;
+    uint32_t recalled; // entry of it; AISLE_CACHE_NONE: planned anew
+    bool forgetful;    // the cache is not asked
     aisle_space space;
     aisle_tangent tangent;
     uint32_t tangent_search; // which one, see route_tangent.c
@@ -144,6 +153,7 @@ typedef struct aisle_route {
 } aisle_route;
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
+void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 
 // Begins. `head` holds the ids and times of the answer (boot_id, revisions, t0_utime, ...); its waypoints are not read.
 // path_revision of the first path told is head's, of the improved one the next.
@@ -154,6 +164,11 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
 // once);
 // AISLE_OK: ended: aisle_route_answer() or cause.
 aisle_status aisle_route_step(aisle_route *self, uint32_t units);
+
+// The layout in force is another one: the answers remembered are held against it. Not while a request runs. AISLE_BUSY,
+// then AISLE_OK.
+void aisle_route_layout_changed(aisle_route *self, const aisle_layout *layout);
+aisle_status aisle_route_step_change(aisle_route *self, uint32_t units);
 
 // The proved path, NULL if there is none.
 const aisle_proof *aisle_route_answer(const aisle_route *self);

@@ -42,18 +42,21 @@ static void seal(aisle_route *self) {
     AISLE_ASSERT(st == AISLE_OK);
 }
 
-static void begin_verify(aisle_route *self) {
-    seal(self);
-    aisle_waypoint_msg *w = self->path->waypoints;
+aisle_verify_request aisle_route_verify_request(const aisle_route *self, double first_theta) {
     const aisle_goal_msg *start = &self->request.start;
     bool any = aisle_goal_heading_is_free(start);
-    aisle_verify_request request = {.layout = self->layout,
-                                    .vehicle = self->vehicle,
-                                    .bytes = self->spare.bytes,
-                                    .size = self->spare.size,
-                                    .start = {start->x, start->y, any ? w[0].theta : start->theta},
-                                    .goals = self->request.goals,
-                                    .num_goals = (uint32_t)self->request.num_goals};
+    return (aisle_verify_request){.layout = self->layout,
+                                  .vehicle = self->vehicle,
+                                  .bytes = self->spare.bytes,
+                                  .size = self->spare.size,
+                                  .start = {start->x, start->y, any ? first_theta : start->theta},
+                                  .goals = self->request.goals,
+                                  .num_goals = (uint32_t)self->request.num_goals};
+}
+
+static void begin_verify(aisle_route *self) {
+    seal(self);
+    aisle_verify_request request = aisle_route_verify_request(self, self->path->waypoints[0].theta);
     aisle_verify_start(&self->verify, &request, self->decoded);
     self->stage = AISLE_ROUTE_VERIFY;
 }
@@ -192,19 +195,24 @@ static aisle_status after_swarm_proof(aisle_route *self) {
     return worse ? rebuild(self) : aisle_route_next_way(self);
 }
 
-aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
-    aisle_status st = aisle_verify_step(&self->verify, units, &self->spent, &self->spare.stamp);
-    if (st == AISLE_BUSY) {
-        return AISLE_BUSY;
-    }
+void aisle_route_count_verify(aisle_route *self) {
     self->intervals += self->verify.intervals;
     self->collide.calls += self->verify.collide.calls;
     if (self->verify.collide.support_max > self->collide.support_max) {
         self->collide.support_max = self->verify.collide.support_max;
     }
+}
+
+aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
+    aisle_status st = aisle_verify_step(&self->verify, units, &self->spent, &self->spare.stamp);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    aisle_route_count_verify(self);
     if (st != AISLE_OK) {
         return disproved(self);
     }
+    self->spare.basis = *aisle_verify_basis(&self->verify);
     if (any_swarm_leg(self)) {
         return after_swarm_proof(self);
     }

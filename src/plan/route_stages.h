@@ -1,6 +1,6 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT.
+// route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT.
 // route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
@@ -42,6 +42,12 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
     aisle_route_tell(self, place, 0, 0);
     return st;
 }
+
+// route_cache.c
+aisle_status aisle_route_recall(aisle_route *self);
+aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units);
+// The request has ended: its answer is remembered, unless it was.
+void aisle_route_remember(aisle_route *self);
 
 // route_check.c
 aisle_status aisle_route_check(aisle_route *self);
@@ -98,6 +104,9 @@ aisle_status aisle_route_step_paper(aisle_route *self, uint32_t units);
 // route_proof.c
 aisle_compose_request aisle_route_build_request(aisle_route *self);
 void aisle_route_begin_build(aisle_route *self);
+// The verifier's request for what is in spare.
+aisle_verify_request aisle_route_verify_request(const aisle_route *self, double first_theta);
+void aisle_route_count_verify(aisle_route *self);
 aisle_status aisle_route_step_build(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units);
 aisle_status aisle_route_step_swarm(aisle_route *self, uint32_t units);

@@ -18,6 +18,8 @@ typedef struct aisle_bench {
     FILE *text, *json;       // json may be NULL
     aisle_query_msg query;   // the one being run
     aisle_path_msg reply;    // the last one
+    uint8_t bytes[AISLE_MSG_DATAGRAM_MAX];
+    size_t size; // of its bytes; 0: none
     bool answered;
 } aisle_bench;
 

@@ -21,19 +21,20 @@ enum { EXIT_GOOD = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
 static const char help[] =
     "aisle-replay runs the inputs of an LCM log through the planner and prints each path.\n"
     "usage: aisle-replay LOG [--prefix NAME] [--config FILE] [--check] [--out FILE] [--json FILE]\n"
-    "       aisle-replay LOG --bench [--repeat N] [--prefix NAME] [--config FILE] [--json FILE]\n"
+    "       aisle-replay LOG --bench [--cached] [--repeat N] [--prefix NAME] [--config FILE] [--json FILE]\n"
     "  --prefix NAME   of the channels in the log; AISLE by default\n"
     "  --config FILE   settings of aisled: limits, vehicle and budget must be those of the recording\n"
     "  --check         compare with the paths recorded in the log, byte for byte but for the host's clock\n"
     "  --out FILE      write inputs and outputs as a new log\n"
     "  --json FILE     write the results as JSON\n"
     "  --bench         run each query many times on the layout in force and print milliseconds\n"
+    "  --cached        with answers remembered: all runs but the first are hits (else none is)\n"
     "  --repeat N      that many times, 200 by default\n"
     "Ends with 0, or 1 on trouble or when --check finds a difference, or 2 on wrong options or settings.\n";
 
 typedef struct arguments {
     const char *log, *prefix, *config, *out, *json, *repeat;
-    bool check, bench, version, help;
+    bool check, bench, cached, version, help;
 } arguments;
 
 // Everything the tool holds besides the engine's block.
@@ -66,6 +67,7 @@ static bool parse(arguments *out, int argc, char **argv, char *message) {
         {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},   {"--out", NULL, &out->out},
         {"--json", NULL, &out->json},     {"--repeat", NULL, &out->repeat},   {"--check", &out->check, NULL},
         {"--bench", &out->bench, NULL},   {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
+        {"--cached", &out->cached, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -218,6 +220,9 @@ static int start(void) {
     if (given->bench && (given->check || given->out != NULL)) {
         return complain(EXIT_USAGE, "--bench goes without --check and --out; see --help", NULL);
     }
+    if (given->cached && !given->bench) {
+        return complain(EXIT_USAGE, "--cached goes with --bench; see --help", NULL);
+    }
     aisle_settings_defaults(&tool.settings);
     if (given->config != NULL && aisle_settings_read(&tool.settings, given->config, message) != AISLE_OK) {
         (void)fprintf(stderr, "%s\n", message);
@@ -227,6 +232,7 @@ static int start(void) {
         aisle_settings_set(&tool.settings, "bus", "prefix", given->prefix, message) != AISLE_OK) {
         return complain(EXIT_USAGE, message, NULL);
     }
+    tool.settings.remember = tool.settings.remember && (!given->bench || given->cached);
     aisle_status status = aisle_engine_start(&tool.engine, &tool.settings, 1, 0, message);
     if (status != AISLE_OK) {
         return complain(status == AISLE_ERR_ARG ? EXIT_USAGE : EXIT_TROUBLE, message, NULL);

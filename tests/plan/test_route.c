@@ -356,7 +356,7 @@ static void test_the_answer_carries_the_ids_it_was_asked_with(void) {
 
 static void test_memory_is_about_what_the_header_says(void) {
     aisle_arena arena = aisle_arena_measure();
-    aisle_limits least = {4096U, 1U, 3U, 1024U, 1U};
+    aisle_limits least = {4096U, 1U, 3U, 1024U, 1U, 1U};
     static aisle_route measured;
     aisle_route_carve(&measured, &arena, &least);
     TEST_ASSERT_TRUE(arena.used < 800U << 10);
