@@ -14,10 +14,13 @@
 // Nothing further than 255 cells changes, as the field saturates.
 // What is outside is exact, so it tells how far outside the window what matters inside can lie: of the cells beside the
 // frame cell b of a row, none further from b than the field at b says, since b's nearest is nearer to the whole row of
-// the window. In columns the next occupied cell is found by steps as long as the field allows ("sphere tracing", Hart
-// 1996, doi:10.1007/s003710050084). Inside, the transform of the whole build runs (grid_field.h): the field is the same
-// bit for bit.
-// Memory: 13 KiB. Time: O(cells of the window and of the columns beside that matter) for a piece.
+// the window; and no row further off than a frame cell's distance and one cell (p and c' above, with s what is nearest to
+// a cell of the window). Inside, the transform of the whole build runs (grid_field.h): the field is the same bit for bit.
+// Column distances beside are counted row by row; those to what is below need a sweep from below first, of which every
+// 32nd row is kept.
+// Where cells became occupied only, the field is lowered to the distances from these: one sweep, and nothing beside
+// matters.
+// Memory: 63 KiB. Time: O(cells of the window and of the columns beside that matter) for a piece.
 #ifndef AISLE_WORLD_GRID_WINDOW_H
 #define AISLE_WORLD_GRID_WINDOW_H
 
@@ -27,21 +30,18 @@
 #define AISLE_WINDOW_SIDE (AISLE_WINDOW_PIECE + 2U * 255U)
 #define AISLE_WINDOW_FREED 3U // in the field of a cell that became free; no squared distance between cells
 
-typedef struct aisle_column { // beside the window, at the row in hand
-    int32_t above, below;     // rows of the nearest occupied cells at or above it and at or below it, or far off
-} aisle_column;
-
-typedef struct aisle_window_side { // of columns beside the window
-    aisle_column *column;          // [256] of columns first, first + 1, ...
-    int32_t first, frame;          // frame: the column next to the window
-    uint32_t n;
-} aisle_window_side;
+typedef struct aisle_window_column { // of the changed cells, at the row in hand
+    int32_t above, below;            // rows of the nearest occupied ones at or above it and at or below it, or far off
+} aisle_window_column;
 
 typedef struct aisle_grid_window {
-    aisle_cells box;
-    aisle_window_side left, right;
-    uint16_t *top, *bottom; // [AISLE_WINDOW_SIDE] column distances in the rows before and behind
-    uint16_t *beside;       // [512] column distances of a row's columns beside
+    aisle_cells box, changed;
+    uint32_t left, right;         // columns beside that matter; one may be the outside
+    int32_t rows0, rows1;         // rows [rows0, rows1) hold all that matters
+    aisle_window_column *nearest; // [AISLE_WINDOW_PIECE]
+    uint16_t *above, *below;      // [AISLE_WINDOW_SIDE + 512] column distances, from the first column beside on
+    uint16_t *saved;              // [25 blocks of rows][512] of columns beside, to what is below the block
+    uint16_t *ahead;              // [32 rows of a block][512] the same in each row of the block in hand
     int32_t next_row;
     uint8_t phase;
 } aisle_grid_window;
@@ -49,14 +49,15 @@ typedef struct aisle_grid_window {
 void aisle_grid_window_carve(aisle_grid_window *self, aisle_arena *arena);
 
 // The window for the cells that changed, all within `changed`, at most AISLE_WINDOW_PIECE a side and not empty: the
-// grid is built but that these hold 0 or AISLE_WINDOW_FREED already. Nothing is written. O(its frame's cells looked at).
-void aisle_grid_window_find(aisle_grid_window *self, const aisle_grid *grid, aisle_cells changed);
+// grid is built but that these hold 0 or AISLE_WINDOW_FREED already; has_freed: some of them the latter. The grid is not
+// written. O(cells of the window).
+void aisle_grid_window_find(aisle_grid_window *self, const aisle_grid *grid, aisle_cells changed, bool has_freed);
 // Rows of work step() will do.
 uint32_t aisle_grid_window_rows(const aisle_grid_window *self);
 // Cells along a row that matter to the window's part of it, the window's own among them.
 uint32_t aisle_grid_window_width(const aisle_grid_window *self);
 
-// After find(); at most *rows rows of work (three sweeps over the window's rows), takes off what was done. AISLE_BUSY,
+// After find(); at most *rows rows of work, takes off what was done. AISLE_BUSY,
 // then AISLE_OK. The grid is not exact between.
 aisle_status aisle_grid_window_step(aisle_grid_window *self, aisle_grid *grid, uint32_t *rows);
 #endif

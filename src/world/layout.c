@@ -88,7 +88,7 @@ aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone 
 }
 
 bool aisle_layout_has_speed_limits(const aisle_layout *self) {
-    return self->index.has_speed_limits;
+    return aisle_layout_held(self)->speed_limits > 0;
 }
 
 bool aisle_layout_has_scan(const aisle_layout *self) {

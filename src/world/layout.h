@@ -92,7 +92,8 @@ typedef struct aisle_layout_change {
     uint16_t index; // of the zone, in the layout now or in the one before
 } aisle_layout_change;
 typedef struct aisle_layout_diff {
-    bool everything; // another layout, or a patch on one that was not in force yet; the list is empty
+    bool everything;   // another layout, or a patch on one that was not in force yet; the list is empty
+    bool is_reordered; // some that came as they were come later in the order now
     uint32_t count;
     aisle_layout_change *change; // [AISLE_LAYOUT_CHANGES_MAX]
 } aisle_layout_diff;

@@ -65,9 +65,32 @@ static void take_scan_row(aisle_layout *self, uint32_t iy) {
     aisle_layout_mark_scan(self, row_of(self, iy));
 }
 
+// Puts a patch's changes into an index of the layout before; false: it has to be built. Those that left go from the last
+// on, those that came from the first on, so that every place is the one in its own layout.
+static bool edit_index(const aisle_layout *self, aisle_layout_index *index, double side) {
+    enum { EDITS_MAX = 16 }; // above, building is as cheap
+    const aisle_layout_diff *diff = &self->diff;
+    if (!self->has_base || diff->is_reordered || diff->count > EDITS_MAX) {
+        return false;
+    }
+    for (uint32_t i = diff->count; i-- > 0U;) {
+        if (!diff->change[i].is_added) {
+            aisle_layout_index_take_out(index, diff->change[i].index, diff->change[i].box);
+        }
+    }
+    for (uint32_t i = 0; i < diff->count; i++) {
+        if (diff->change[i].is_added && !aisle_layout_index_put_in(index, diff->change[i].index, diff->change[i].box)) {
+            return false;
+        }
+    }
+    return aisle_layout_index_is_as_built(index, side);
+}
+
 static void build_index(aisle_layout *self) {
     const aisle_layout_blocks zones = {aisle_layout_held(self), NULL};
-    aisle_layout_index_build(&self->index, &zones, AISLE_LAYOUT_BUCKET);
+    if (!edit_index(self, &self->index, AISLE_LAYOUT_BUCKET)) {
+        aisle_layout_index_build(&self->index, &zones, AISLE_LAYOUT_BUCKET);
+    }
 }
 
 static void build_wide(aisle_layout *self) {
@@ -79,7 +102,9 @@ static void build_wide(aisle_layout *self) {
     while (2.0 * side <= share) {
         side *= 2.0;
     }
-    aisle_layout_index_build(&self->wide, &blocks, side);
+    if (!edit_index(self, &self->wide, side)) {
+        aisle_layout_index_build(&self->wide, &blocks, side);
+    }
 }
 
 static void clear_grid(aisle_layout *self) {

@@ -13,13 +13,15 @@
 
 typedef struct aisle_layout_index {
     aisle_vec2 lo;
-    double side;           // m, a power of two
-    double per_metre;      // buckets: 1 / side, exactly
-    uint32_t nx, ny;       // 0: empty
-    bool has_speed_limits; // some zone is of kind SPEED_LIMIT
-    uint32_t *starts;      // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
-    uint16_t *entries;     // [entry_capacity] block indices, rising in a bucket
+    aisle_vec2 size;   // m, of the bounds
+    double side;       // m, a power of two
+    double per_metre;  // buckets: 1 / side, exactly
+    uint32_t nx, ny;   // 0: empty
+    uint32_t *starts;  // [bucket_capacity + 1] bucket b lists entries [starts[b], starts[b+1])
+    uint16_t *entries; // [entry_capacity] block indices, rising in a bucket
     uint32_t bucket_capacity, entry_capacity;
+    uint64_t finer;      // entries half the side would need
+    bool is_finer_known; // it was tried and they were too many
 } aisle_layout_index;
 
 typedef struct aisle_bucket_range { // buckets [x0, x1] by [y0, y1], ends included
@@ -40,6 +42,13 @@ void aisle_layout_index_carve(aisle_layout_index *self, aisle_arena *arena, uint
 // Over the store's bounds, which are not empty and finite; at most as many blocks as were carved for; side (m), a power of two, of
 // the buckets if they fit.
 void aisle_layout_index_build(aisle_layout_index *self, const aisle_layout_blocks *blocks, double side);
+
+// A block less, or one more at this place of the order: those behind it move up or down by one. box: the block's. False:
+// there is no room, and the index is worth nothing until built. O(entries + buckets), a few us.
+void aisle_layout_index_take_out(aisle_layout_index *self, uint32_t block, aisle_aabb box);
+bool aisle_layout_index_put_in(aisle_layout_index *self, uint32_t block, aisle_aabb box);
+// After such edits: the index is, to the last entry, what build() would make with this side. If not, build it. O(1).
+bool aisle_layout_index_is_as_built(const aisle_layout_index *self, double side);
 
 // Bucket a place belongs to; index not empty, p finite.
 void aisle_layout_index_bucket(const aisle_layout_index *self, aisle_vec2 p, uint32_t *x, uint32_t *y);

@@ -139,6 +139,8 @@ static void stage_edited(aisle_layout *self, const aisle_layout_patch_msg *msg) 
         *edit |= is_same ? EDIT_SAME : 0U;
         if ((*edit & EDIT_REMOVED) == 0) { // changed in place
             put_polygon(self, put_again, is_same);
+        } else if (is_same) {
+            self->diff.is_reordered = true;
         }
     }
     for (int16_t i = 0; i < msg->num_polygons; i++) {
@@ -155,6 +157,7 @@ static void stage_patch(aisle_layout *self, const aisle_layout_patch_msg *msg) {
     aisle_layout_stage_begin(self, &active->header, &active->lattice);
     store->zones_content = active->zones_content;
     self->diff.everything = false;
+    self->diff.is_reordered = false;
     self->diff.count = 0;
     stage_edited(self, msg);
     store->header.map_revision = msg->map_revision;

@@ -71,6 +71,7 @@ void aisle_layout_store_add(aisle_layout_store *self, const aisle_polygon_msg *p
     zone->value = polygon->value;
     zone->direction = polygon->direction;
     zone->box = aisle_convex_aabb(&(aisle_convex){v, zone->n, 0.0});
+    self->speed_limits += zone->kind == AISLE_POLYGON_SPEED_LIMIT ? 1U : 0U;
     self->zones_content += aisle_layout_store_content(self, zone);
 }
 
@@ -79,6 +80,7 @@ void aisle_layout_store_add_zone(aisle_layout_store *self, const aisle_layout_st
     const uint32_t first = to->first;
     *to = *zone;
     to->first = first;
+    self->speed_limits += zone->kind == AISLE_POLYGON_SPEED_LIMIT ? 1U : 0U;
     memcpy(&self->vertices[first], &from->vertices[zone->first], zone->n * sizeof *self->vertices);
 }
 

@@ -41,6 +41,7 @@ typedef struct aisle_layout_store {
     uint64_t scan_content;  // and of the scan; known when the layout is built
     uint32_t zone_count, zone_capacity;
     uint32_t vertex_count, vertex_capacity;
+    uint32_t speed_limits; // zones of kind SPEED_LIMIT
     uint32_t cell_capacity;
 } aisle_layout_store;
 

