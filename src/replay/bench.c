@@ -76,6 +76,21 @@ static void print_row(const aisle_bench *self, const double *sorted) {
     }
 }
 
+// The layout in force under its next revision.
+static void count_layout_on(aisle_replay *replay, int64_t utime) {
+    static aisle_layout_patch_msg patch; // large
+    static uint8_t bytes[64];
+    aisle_status_msg status;
+    size_t size = 0;
+    aisle_planner_status(replay->planner, utime, &status);
+    patch.map_id = status.map_id;
+    patch.base_revision = status.map_revision;
+    patch.map_revision = status.map_revision + 1;
+    if (aisle_msg_encode(AISLE_MSG_LAYOUT_PATCH, &patch, bytes, sizeof bytes, &size) == AISLE_OK) {
+        aisle_replay_input(replay, utime, AISLE_CHANNEL_LAYOUT_PATCH, bytes, size);
+    }
+}
+
 bool aisle_bench_query(aisle_bench *self, aisle_replay *replay, int64_t utime, const uint8_t *bytes, size_t size) {
     static uint8_t again[AISLE_MSG_DATAGRAM_MAX];
     if (aisle_msg_decode(AISLE_MSG_QUERY, bytes, size, &self->query, NULL) != AISLE_OK) {
@@ -89,6 +104,9 @@ bool aisle_bench_query(aisle_bench *self, aisle_replay *replay, int64_t utime, c
     double *samples = self->samples + self->count;
     for (uint32_t i = 0; i < self->repeat; i++) {
         size_t length = 0;
+        if (self->again) {
+            count_layout_on(replay, utime);
+        }
         run.query_id = (int32_t)(((uint32_t)self->query.query_id + i * 1000003U) & (uint32_t)INT32_MAX);
         self->size = 0;
         samples[i] = 0.0;

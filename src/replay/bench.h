@@ -1,5 +1,7 @@
 // bench.h - each query of a log, many times on the layout in force: milliseconds and work units. Level 5.
 //
+// With `again` a patch that changes nothing but the revision goes before every run, unmeasured, so that an answer
+// remembered needs its whole proof.
 // A run is submit() to the pulled answer on an otherwise idle planner. Each run has a query_id of its own, for a
 // planner may leave out a query it has answered. Memory: the samples, on the heap. Durations are the host's monotonic
 // clock.
@@ -12,6 +14,7 @@
 
 typedef struct aisle_bench {
     uint32_t repeat; // runs of each query
+    bool again;
     double *samples; // [queries * repeat] ms
     size_t count, capacity;
     int64_t queries, failed; // failed: runs that gave no reply

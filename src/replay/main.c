@@ -21,7 +21,7 @@ enum { EXIT_GOOD = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
 static const char help[] =
     "aisle-replay runs the inputs of an LCM log through the planner and prints each path.\n"
     "usage: aisle-replay LOG [--prefix NAME] [--config FILE] [--check] [--out FILE] [--json FILE]\n"
-    "       aisle-replay LOG --bench [--cached] [--repeat N] [--prefix NAME] [--config FILE] [--json FILE]\n"
+    "       aisle-replay LOG --bench [--cached [--proofs]] [--repeat N] [--prefix NAME] [--config FILE] [--json FILE]\n"
     "  --prefix NAME   of the channels in the log; AISLE by default\n"
     "  --config FILE   settings of aisled: limits, vehicle and budget must be those of the recording\n"
     "  --check         compare with the paths recorded in the log, byte for byte but for the host's clock\n"
@@ -29,12 +29,13 @@ static const char help[] =
     "  --json FILE     write the results as JSON\n"
     "  --bench         run each query many times on the layout in force and print milliseconds\n"
     "  --cached        with answers remembered: all runs but the first are hits (else none is)\n"
+    "  --proofs        and each hit is proved as a whole, under a revision of its own\n"
     "  --repeat N      that many times, 200 by default\n"
     "Ends with 0, or 1 on trouble or when --check finds a difference, or 2 on wrong options or settings.\n";
 
 typedef struct arguments {
     const char *log, *prefix, *config, *out, *json, *repeat;
-    bool check, bench, cached, version, help;
+    bool check, bench, cached, proofs, version, help;
 } arguments;
 
 // Everything the tool holds besides the engine's block.
@@ -67,7 +68,7 @@ static bool parse(arguments *out, int argc, char **argv, char *message) {
         {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},   {"--out", NULL, &out->out},
         {"--json", NULL, &out->json},     {"--repeat", NULL, &out->repeat},   {"--check", &out->check, NULL},
         {"--bench", &out->bench, NULL},   {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
-        {"--cached", &out->cached, NULL},
+        {"--cached", &out->cached, NULL},     {"--proofs", &out->proofs, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -186,6 +187,7 @@ static int run_files(uint32_t repeat) {
     aisle_check_init(&tool.check, stdout);
     if (given->bench) {
         aisle_bench_init(&tool.bench, repeat, stdout, tool.json);
+        tool.bench.again = given->proofs;
     }
     int code = replay_log();
     (void)close_file(tool.in);
@@ -220,8 +222,8 @@ static int start(void) {
     if (given->bench && (given->check || given->out != NULL)) {
         return complain(EXIT_USAGE, "--bench goes without --check and --out; see --help", NULL);
     }
-    if (given->cached && !given->bench) {
-        return complain(EXIT_USAGE, "--cached goes with --bench; see --help", NULL);
+    if ((given->cached && !given->bench) || (given->proofs && !given->cached)) {
+        return complain(EXIT_USAGE, "--cached goes with --bench, --proofs with --cached; see --help", NULL);
     }
     aisle_settings_defaults(&tool.settings);
     if (given->config != NULL && aisle_settings_read(&tool.settings, given->config, message) != AISLE_OK) {

@@ -389,6 +389,24 @@ static void test_a_polygon_that_comes_too_near_drops_what_it_touches(void) {
     TEST_ASSERT_FALSE(is_known());
 }
 
+// Half a circle of 5 m above the chord: its top is at y = 7.
+static void test_an_arc_is_touched_where_it_runs_not_where_its_chord_does(void) {
+    static const int32_t ids[] = {1, 2};
+    for (int near = 0; near < 2; near++) {
+        setUp();
+        know_layout();
+        make_path(2);
+        path.waypoints[1].curvature = -0.2F;
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_path_encode(&path, bytes, sizeof bytes, &size));
+        put_worth(15.7);
+        double y = near != 0 ? 8.49 : 8.51;
+        hall_add(6.9, y, 7.1, y + 0.5);
+        change(ids);
+        take_in(1000);
+        TEST_ASSERT_EQUAL(near == 0, is_known());
+    }
+}
+
 static void test_what_was_dropped_serves_when_its_layout_comes_back(void) {
     static const int32_t ids[] = {1, 2};
     know_layout();
@@ -405,9 +423,10 @@ static void test_what_was_dropped_serves_when_its_layout_comes_back(void) {
 }
 
 // Remembers the way from (2, 2) to (12, 2) as 14 m long, removes a box at a distance of `away` beyond it.
-static bool is_kept_when_removed(double away, double worth) {
+static bool is_kept_when_removed(int8_t objective, double away, double worth) {
     static const int32_t ids[] = {1, 2};
     setUp();
+    options.objective = objective;
     know_layout();
     hall_add(6.0, 2.0 + away, 8.0, 2.5 + away);
     change(ids);
@@ -426,15 +445,27 @@ static bool is_kept_when_removed(double away, double worth) {
 // Ellipse: foci 10 m apart, 14 m round: half axis sqrt(7^2 - 5^2) = 4.899; a way passes the box at outer radius + creep
 // clearance, 1 m.
 static void test_a_polygon_that_leaves_keeps_what_no_way_through_its_place_can_better(void) {
-    TEST_ASSERT_TRUE(is_kept_when_removed(5.95, 14.0));
-    TEST_ASSERT_FALSE(is_kept_when_removed(5.85, 14.0));
+    TEST_ASSERT_TRUE(is_kept_when_removed(AISLE_OPTIONS_SHORTEST, 5.95, 14.0));
+    TEST_ASSERT_FALSE(is_kept_when_removed(AISLE_OPTIONS_SHORTEST, 5.85, 14.0));
 }
 
 // Worth 18 m of its objective: sqrt(9^2 - 5^2) = 7.483.
 static void test_a_path_worse_than_its_length_may_be_bettered_from_farther_away(void) {
-    options.objective = AISLE_OPTIONS_SAFEST;
-    TEST_ASSERT_FALSE(is_kept_when_removed(8.4, 18.0));
-    TEST_ASSERT_TRUE(is_kept_when_removed(8.6, 18.0));
+    TEST_ASSERT_FALSE(is_kept_when_removed(AISLE_OPTIONS_SAFEST, 8.4, 18.0));
+    TEST_ASSERT_TRUE(is_kept_when_removed(AISLE_OPTIONS_SAFEST, 8.6, 18.0));
+}
+
+// Of a way with less risk nothing is known: it may come from anywhere.
+static void test_a_path_with_risk_stays_only_where_nothing_leaves(void) {
+    static const int32_t ids[] = {1, 2};
+    TEST_ASSERT_TRUE(is_kept_when_removed(AISLE_OPTIONS_SAFEST, 20.0, 14.0));
+    TEST_ASSERT_FALSE(is_kept_when_removed(AISLE_OPTIONS_SAFEST, 20.0, 3.0 * 1048576.0 + 14.0));
+    TEST_ASSERT_FALSE(is_kept_when_removed(AISLE_OPTIONS_PAPER, 20.0, 14.0));
+    put(30);
+    hall_add(6.0, 22.0, 8.0, 22.5);
+    change(ids);
+    take_in(1000);
+    TEST_ASSERT_TRUE(is_known());
 }
 
 static void is_objective_worth(int8_t objective, double value, double metres) {
@@ -574,9 +605,11 @@ int main(void) {
     RUN_TEST(test_a_detour_is_the_shortest_way_over_a_place_of_the_box);
     RUN_TEST(test_a_polygon_that_comes_keeps_what_it_does_not_come_near);
     RUN_TEST(test_a_polygon_that_comes_too_near_drops_what_it_touches);
+    RUN_TEST(test_an_arc_is_touched_where_it_runs_not_where_its_chord_does);
     RUN_TEST(test_what_was_dropped_serves_when_its_layout_comes_back);
     RUN_TEST(test_a_polygon_that_leaves_keeps_what_no_way_through_its_place_can_better);
     RUN_TEST(test_a_path_worse_than_its_length_may_be_bettered_from_farther_away);
+    RUN_TEST(test_a_path_with_risk_stays_only_where_nothing_leaves);
     RUN_TEST(test_worth_is_counted_in_metres_of_unhindered_way);
     RUN_TEST(test_in_any_order_the_whole_path_counts);
     RUN_TEST(test_the_same_layout_said_again_keeps_everything);
