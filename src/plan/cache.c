@@ -177,6 +177,11 @@ static void make_key(aisle_cache *self, const aisle_cache_question *question) {
     self->hash = aisle_digest(0, self->key, self->key_size);
 }
 
+static uint64_t digest_of_head(const aisle_cache_entry *entry, const uint8_t *path) {
+    const uint64_t order = aisle_digest(0, entry->order, sizeof entry->order);
+    return aisle_digest(order, path, AISLE_PATH_AT_WAYPOINTS);
+}
+
 static bool is_of(const aisle_cache_entry *entry, int32_t map_id, uint64_t content) {
     return entry->map_id == map_id && entry->content == content;
 }
@@ -215,12 +220,12 @@ uint32_t aisle_cache_find(aisle_cache *self, const aisle_cache_question *questio
     }
     aisle_cache_entry *entry = &self->entries[at];
     get_bytes(&c, bytes, entry->path_size);
-    if (aisle_digest(0, bytes, AISLE_PATH_AT_WAYPOINTS) != entry->head) {
+    if (digest_of_head(entry, bytes) != entry->head) {
         aisle_cache_disprove(self, at);
         return AISLE_CACHE_NONE;
     }
     entry->used = ++self->tick;
-    *found = (aisle_cache_found){entry->path_size, entry->theta, entry->basis};
+    *found = (aisle_cache_found){entry->path_size, entry->theta, entry->order, entry->basis};
     return at;
 }
 
@@ -276,6 +281,27 @@ static double excess_of(const aisle_cache_question *question, const aisle_cache_
     return aisle_max(metres - length, 0.0);
 }
 
+static bool is_same_stop(const aisle_goal_msg *a, const aisle_goal_msg *b) {
+    return a->id == b->id && memcmp(&a->x, &b->x, 3U * sizeof(double)) == 0 &&
+           memcmp(&a->tolerance_xy, &b->tolerance_xy, 3U * sizeof(float)) == 0;
+}
+
+// Which of the question's goals each of the path's is, each taken once.
+static void note_order(aisle_cache_entry *entry, const aisle_cache_question *question,
+                       const aisle_cache_answer *answer) {
+    uint64_t taken = 0;
+    for (uint32_t i = 0; i < question->num_goals; i++) {
+        uint32_t at = 0;
+        while (at < question->num_goals &&
+               ((taken >> at & 1U) != 0U || !is_same_stop(&answer->goals[i], &question->goals[at]))) {
+            at++;
+        }
+        AISLE_ASSERT(at < question->num_goals);
+        taken |= (uint64_t)1U << at;
+        entry->order[i] = (uint8_t)at;
+    }
+}
+
 void aisle_cache_put(aisle_cache *self, const aisle_cache_question *question, const aisle_cache_answer *answer) {
     const aisle_vehicle *vehicle = question->vehicle;
     make_key(self, question);
@@ -297,12 +323,13 @@ void aisle_cache_put(aisle_cache *self, const aisle_cache_question *question, co
                                  .first = take_blocks(self, blocks),
                                  .key_size = self->key_size,
                                  .path_size = size,
-                                 .head = aisle_digest(0, answer->bytes, AISLE_PATH_AT_WAYPOINTS),
                                  .basis = answer->basis,
                                  .theta = answer->path->waypoints[0].theta,
                                  .reach = aisle_max(vehicle->creep_clearance, vehicle->margin),
                                  .radius = vehicle->outer_radius,
                                  .excess = excess_of(question, answer)};
+    note_order(entry, question, answer);
+    entry->head = digest_of_head(entry, answer->bytes);
     c = cursor_at(self, entry->first);
     put_bytes(&c, self->key, self->key_size);
     put_bytes(&c, answer->bytes, size);
@@ -421,7 +448,7 @@ static bool load(aisle_cache *self, const aisle_cache_entry *entry) {
     }
     get_bytes(&c, change->bytes, entry->path_size);
     change->at = change->leg_start = 0;
-    change->loaded = aisle_digest(0, change->bytes, AISLE_PATH_AT_WAYPOINTS) == entry->head &&
+    change->loaded = digest_of_head(entry, change->bytes) == entry->head &&
                      aisle_crc32(0, change->bytes + AISLE_PATH_AT_WAYPOINTS,
                                  entry->path_size - AISLE_PATH_AT_WAYPOINTS) == entry->basis.waypoints &&
                      aisle_msg_decode(AISLE_MSG_PATH, change->bytes, entry->path_size, change->path, NULL) == AISLE_OK;

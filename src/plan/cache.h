@@ -67,6 +67,7 @@ typedef struct aisle_cache_entry {
     uint64_t head;                       // digest of the path's bytes before its waypoints; the basis tells of the rest
     uint32_t first, key_size, path_size; // bytes, one behind the other from block `first` on
     aisle_proof_basis basis;
+    uint8_t order[AISLE_QUERY_MAX_GOALS];
     double theta;  // rad, of the path's first waypoint
     double reach;  // m, from the vehicle's origin to what may matter to it
     double radius; // m, outer
@@ -103,8 +104,9 @@ void aisle_cache_carve(aisle_cache *self, aisle_arena *arena, const aisle_limits
 #define AISLE_CACHE_PATH_MAX 60000U // bytes
 
 typedef struct aisle_cache_found {
-    size_t size;  // of the path
-    double theta; // rad, of its first waypoint
+    size_t size;          // of the path
+    double theta;         // rad, of its first waypoint
+    const uint8_t *order; // [num_goals] in which it visits them: indices of the question's goals
     aisle_proof_basis basis;
 } aisle_cache_found;
 
@@ -119,8 +121,9 @@ void aisle_cache_disprove(aisle_cache *self, uint32_t entry);
 typedef struct aisle_cache_answer { // a proved path
     const uint8_t *bytes;           // of at most AISLE_CACHE_PATH_MAX
     size_t size;
-    const aisle_path_msg *path; // the same, decoded
-    double value;               // what it is worth by the question's objective, as aisle_route_measure() has it
+    const aisle_path_msg *path;  // the same, decoded
+    const aisle_goal_msg *goals; // the question's, in the order in which it visits them
+    double value;                // what it is worth by the question's objective, as aisle_route_measure() has it
     aisle_proof_basis basis;
 } aisle_cache_answer;
 

@@ -199,6 +199,7 @@ static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) 
                              .map_id = msg->map_id,
                              .start = msg->start,
                              .options = msg->options,
+                             .ordering = msg->ordering,
                              .num_goals = msg->num_goals};
     memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
     if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {
@@ -243,6 +244,7 @@ static aisle_status begin_mission(aisle_planner *self, const aisle_goal_list_msg
                              .pose_utime = self->has_pose ? self->pose.utime : 0,
                              .start = pose_as_start(self),
                              .options = msg->options,
+                             .ordering = msg->ordering,
                              .num_goals = msg->num_goals};
     memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
     if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {

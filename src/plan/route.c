@@ -2,6 +2,8 @@
 
 #include "plan/route_stages.h"
 
+#include <string.h>
+
 // No leg is searched both ways at a time: the tangent search lies where the grid search does.
 static void carve_searches(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_arena shared = *arena;
@@ -61,6 +63,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->layout = layout;
     self->vehicle = vehicle;
     self->request = *request;
+    memcpy(self->asked, request->goals, sizeof self->asked);
     self->stage = AISLE_ROUTE_RECALL;
     self->recalled = AISLE_CACHE_NONE;
     self->leg = 0;

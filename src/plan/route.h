@@ -56,6 +56,7 @@ typedef struct aisle_request { // a query, or a goal list with the pose it start
     int64_t pose_utime;
     aisle_goal_msg start; // of a goal list: the pose, heading fixed
     aisle_options_msg options;
+    int8_t ordering; // AISLE_GOAL_LIST_*
     int16_t num_goals;
     aisle_goal_msg goals[AISLE_GOAL_LIST_MAX_GOALS];
 } aisle_request;
@@ -107,8 +108,9 @@ typedef enum aisle_route_stage {
 typedef struct aisle_route {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
-    aisle_request request;
-    const aisle_way *way; // under way
+    aisle_request request;                           // its goals in the order planned
+    aisle_goal_msg asked[AISLE_GOAL_LIST_MAX_GOALS]; // and as they came
+    const aisle_way *way;                            // under way
     uint32_t way_index;
     aisle_objective objective; // of the way
     double room;               // m, that its tangent searches keep to obstacles

@@ -2,11 +2,14 @@
 
 #include "base/check.h"
 
+#include <string.h>
+
 static aisle_cache_question question_of(const aisle_route *self) {
     const aisle_request *request = &self->request;
     return (aisle_cache_question){.start = &request->start,
-                                  .goals = request->goals,
+                                  .goals = self->asked,
                                   .num_goals = (uint32_t)request->num_goals,
+                                  .ordering = request->ordering,
                                   .options = &request->options,
                                   .vehicle = self->vehicle,
                                   .layout = self->layout};
@@ -18,6 +21,7 @@ static bool has_memory(const aisle_route *self) {
 }
 
 static aisle_status plan(aisle_route *self) {
+    memcpy(self->request.goals, self->asked, sizeof self->asked); // in place of a recalled answer's order
     self->recalled = AISLE_CACHE_NONE;
     self->stage = AISLE_ROUTE_CHECK;
     return AISLE_BUSY;
@@ -34,6 +38,9 @@ aisle_status aisle_route_recall(aisle_route *self) {
     self->recalled = aisle_cache_find(&self->cache, &question, proof->bytes, &found);
     if (self->recalled == AISLE_CACHE_NONE) {
         return plan(self);
+    }
+    for (int16_t i = 0; i < self->request.num_goals; i++) {
+        self->request.goals[i] = self->asked[found.order[i]];
     }
     proof->size = found.size;
     proof->basis = found.basis;
@@ -80,8 +87,12 @@ void aisle_route_remember(aisle_route *self) {
     const aisle_cache_question question = question_of(self);
     aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, best->bytes, best->size, self->decoded, NULL);
     AISLE_ASSERT(st == AISLE_OK);
-    const aisle_cache_answer answer = {
-        .bytes = best->bytes, .size = best->size, .path = self->decoded, .value = best->value, .basis = best->basis};
+    const aisle_cache_answer answer = {.bytes = best->bytes,
+                                       .size = best->size,
+                                       .path = self->decoded,
+                                       .goals = self->request.goals,
+                                       .value = best->value,
+                                       .basis = best->basis};
     aisle_cache_put(&self->cache, &question, &answer);
 }
 

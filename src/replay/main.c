@@ -68,7 +68,7 @@ static bool parse(arguments *out, int argc, char **argv, char *message) {
         {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},   {"--out", NULL, &out->out},
         {"--json", NULL, &out->json},     {"--repeat", NULL, &out->repeat},   {"--check", &out->check, NULL},
         {"--bench", &out->bench, NULL},   {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
-        {"--cached", &out->cached, NULL},     {"--proofs", &out->proofs, NULL},
+        {"--cached", &out->cached, NULL}, {"--proofs", &out->proofs, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);

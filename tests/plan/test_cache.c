@@ -12,6 +12,7 @@ static aisle_cache_found found;
 static aisle_path_msg path, scratch;
 static uint8_t bytes[AISLE_MSG_DATAGRAM_MAX], out[AISLE_CACHE_PATH_MAX];
 static size_t size;
+static const aisle_goal_msg *visited; // the goals in the path's order
 
 // 40 x 30 m, id 1 a pillar in the middle.
 void setUp(void) {
@@ -28,6 +29,7 @@ void setUp(void) {
     start = (aisle_goal_msg){.x = 2.0, .y = 2.0, .tolerance_theta = 4.0F};
     goals[0] = (aisle_goal_msg){.id = 11, .x = 12.0, .y = 2.0, .tolerance_theta = 4.0F};
     options = (aisle_options_msg){.objective = AISLE_OPTIONS_SHORTEST};
+    visited = goals;
     question = (aisle_cache_question){.start = &start,
                                       .goals = goals,
                                       .num_goals = 1,
@@ -62,7 +64,7 @@ static void make_path(int16_t n) {
 }
 
 static void put_worth(double value) {
-    aisle_cache_answer answer = {.bytes = bytes, .size = size, .path = &path, .value = value};
+    aisle_cache_answer answer = {.bytes = bytes, .size = size, .path = &path, .goals = visited, .value = value};
     answer.basis.waypoints = aisle_crc32(0, bytes + AISLE_PATH_AT_WAYPOINTS, size - AISLE_PATH_AT_WAYPOINTS);
     answer.basis.size = (uint32_t)size;
     aisle_cache_put(&cache, &question, &answer);
@@ -237,6 +239,25 @@ static void test_the_vehicle_is_part_of_the_question_but_not_its_revision(void) 
     hall_vehicle = was;
     hall_vehicle.revision++;
     TEST_ASSERT_TRUE(is_known());
+}
+
+static void test_the_order_of_the_goals_comes_back_with_the_path(void) {
+    static aisle_goal_msg other[4];
+    question.num_goals = 4;
+    question.ordering = AISLE_GOAL_LIST_ANY_ORDER;
+    goals[1] = goals[3] = (aisle_goal_msg){.id = 12, .x = 3.0}; // twice the same
+    goals[2] = (aisle_goal_msg){.id = 13, .x = 4.0, .dwell = 1.0F};
+    const uint8_t order[4] = {2, 1, 0, 3};
+    for (int i = 0; i < 4; i++) {
+        other[i] = goals[order[i]];
+    }
+    visited = other;
+    put(10);
+    uint32_t at = find();
+    TEST_ASSERT_EQUAL_MEMORY(order, found.order, 4);
+    cache.entries[at].order[1] = 3;
+    TEST_ASSERT_FALSE(is_known());
+    TEST_ASSERT_EQUAL_INT64(1, cache.spoiled);
 }
 
 static void test_an_equal_hash_alone_is_no_hit(void) {
@@ -595,6 +616,7 @@ int main(void) {
     RUN_TEST(test_stops_are_part_of_the_question);
     RUN_TEST(test_options_and_ordering_are_part_of_the_question);
     RUN_TEST(test_the_vehicle_is_part_of_the_question_but_not_its_revision);
+    RUN_TEST(test_the_order_of_the_goals_comes_back_with_the_path);
     RUN_TEST(test_an_equal_hash_alone_is_no_hit);
     RUN_TEST(test_padding_of_messages_is_no_part_of_the_question);
     RUN_TEST(test_the_least_recently_used_answer_leaves);
