@@ -25,6 +25,9 @@
 // that was out is withdrawn before (MAP_MISMATCH, CONFLICT with the vehicle's revision), unless it is the same vehicle by
 // all but its revision: then the path goes on under that one. What
 // names a list stays known when it is reached or cancelled: sent again it is a duplicate and moves nobody.
+// A list in any order is ordered when it is planned; from then on its goals count as reached in that order, by their
+// ids. What is reached stays reached; the others are ordered anew whenever the list is planned again, and only then. A
+// list whose goals share an id, or of an ordering there is not, is refused whole and the mission goes on.
 // Memory of answers: what was answered is remembered by what was asked (start, goals, options, vehicle, layout; no ids or
 // times of messages) and answered again with path_msg.cached set, after a proof on the layout in force. A changed layout
 // keeps what it does not touch (plan/cache.h says by what rule, and what that promises of its length).

@@ -244,13 +244,17 @@ void aisle_cache_disprove(aisle_cache *self, uint32_t entry) {
 
 // ---- worth
 
-// s of standing at goals on the way.
+// s of standing at goals on the way; of goals in any order the longest stand may be the last, which is not on the way.
 static double dwell_of(const aisle_cache_question *question) {
+    const bool any_order = question->ordering == AISLE_GOAL_LIST_ANY_ORDER;
     double sum = 0.0;
-    for (uint32_t i = 0; i + 1U < question->num_goals; i++) {
-        sum += aisle_max((double)question->goals[i].dwell, 0.0);
+    double most = 0.0;
+    for (uint32_t i = 0; i < question->num_goals; i++) {
+        double dwell = aisle_max((double)question->goals[i].dwell, 0.0);
+        most = any_order ? aisle_max(most, dwell) : dwell;
+        sum += dwell;
     }
-    return sum;
+    return sum - most;
 }
 
 // D of cache.h.

@@ -82,6 +82,8 @@ void aisle_planner_publish(aisle_planner *self, const aisle_request *request, co
         return;
     }
     aisle_mission *mission = &self->mission;
+    AISLE_ASSERT(mission->request.num_goals == request->num_goals);
+    memcpy(mission->request.goals, request->goals, sizeof request->goals);
     memcpy(mission->current.bytes, proof->bytes, proof->size);
     mission->current.size = proof->size;
     mission->current.stamp = proof->stamp;

@@ -166,26 +166,6 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
 
 // ---- requests
 
-// Nearest goal first, by beelines; the planner's answer names the order by goal_id.
-static void order_goals(aisle_request *request) {
-    aisle_vec2 at = {request->start.x, request->start.y};
-    for (int16_t i = 0; i < request->num_goals; i++) {
-        int16_t best = i;
-        double least = -1.0;
-        for (int16_t k = i; k < request->num_goals; k++) {
-            double away = aisle_vec2_distance(at, aisle_vec2_of(request->goals[k].x, request->goals[k].y));
-            if (least < 0.0 || away < least) {
-                least = away;
-                best = k;
-            }
-        }
-        aisle_goal_msg nearest = request->goals[best];
-        request->goals[best] = request->goals[i];
-        request->goals[i] = nearest;
-        at = aisle_vec2_of(nearest.x, nearest.y);
-    }
-}
-
 static bool count_is_bad(int16_t num_goals) {
     return num_goals < 0 || num_goals > AISLE_GOAL_LIST_MAX_GOALS;
 }
@@ -202,9 +182,6 @@ static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) 
                              .ordering = msg->ordering,
                              .num_goals = msg->num_goals};
     memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
-    if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {
-        order_goals(&request);
-    }
     return enqueue(self, &request);
 }
 
@@ -247,9 +224,6 @@ static aisle_status begin_mission(aisle_planner *self, const aisle_goal_list_msg
                              .ordering = msg->ordering,
                              .num_goals = msg->num_goals};
     memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
-    if (msg->ordering == AISLE_GOAL_LIST_ANY_ORDER) {
-        order_goals(&request);
-    }
     aisle_status st = enqueue(self, &request);
     if (st == AISLE_OK) {
         aisle_mission *mission = &self->mission;
@@ -265,6 +239,10 @@ static aisle_status begin_mission(aisle_planner *self, const aisle_goal_list_msg
 static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *msg) {
     if (count_is_bad(msg->num_goals)) {
         return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->num_goals);
+    }
+    int32_t id;
+    if (msg->num_goals > 0 && aisle_planner_order_is_bad(msg->ordering, msg->goals, msg->num_goals, &id)) {
+        return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, id);
     }
     aisle_mission *mission = &self->mission;
     uint32_t digest = digest_of(msg);

@@ -70,6 +70,8 @@ struct aisle_planner {
 // planner_hindrance.c
 
 bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
+// No such ordering, or goals in any order that share an id (*id; else 0): nobody could tell which one is reached.
+bool aisle_planner_order_is_bad(int8_t ordering, const aisle_goal_msg *goals, int16_t count, int32_t *id);
 // Why a request cannot even begin; cause 0: it can.
 aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request);
 // Why the mission's path must not be driven at now_us; 0: it may. *id: what is meant.
@@ -80,7 +82,8 @@ int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us,
 // Queues a path_t of status NONE with the places told; told_count at most AISLE_ROUTE_TOLD_MAX.
 void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
                           const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units);
-// Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission; one that must not be
+// Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission, whose goals take its
+// order; one that must not be
 // driven now is kept back until its lease may begin.
 void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);
 // Queues the mission's path once more with its lease renewed.

@@ -4,18 +4,23 @@
 
 #include <string.h>
 
-// No leg is searched both ways at a time: the tangent search lies where the grid search does.
+// No leg is searched both ways at a time: the tangent search lies where the grid search does. Nor is anything searched
+// while an order is computed.
 static void carve_searches(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_arena shared = *arena;
+    aisle_arena table = *arena;
     aisle_tangent_carve(&self->tangent, &shared, limits);
+    aisle_tour_carve_shared(&self->tour, &table);
     aisle_seed_carve(&self->seed, arena, limits);
-    arena->overflow = arena->overflow || shared.overflow;
+    arena->overflow = arena->overflow || shared.overflow || table.overflow;
     arena->used = arena->used > shared.used ? arena->used : shared.used;
+    arena->used = arena->used > table.used ? arena->used : table.used;
 }
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_space_carve(&self->space, arena, limits->cells);
     carve_searches(self, arena, limits);
+    aisle_tour_carve(&self->tour, arena);
     aisle_swarm_carve(&self->swarm, arena);
     aisle_paper_swarm_carve(&self->paper, arena);
     aisle_compose_carve(&self->compose, arena);
@@ -66,6 +71,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     memcpy(self->asked, request->goals, sizeof self->asked);
     self->stage = AISLE_ROUTE_RECALL;
     self->recalled = AISLE_CACHE_NONE;
+    self->is_cut = false;
     self->leg = 0;
     self->point_count = 0;
     self->best.ready = self->best.told = false;
@@ -94,6 +100,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_reprove(self, units);
     case AISLE_ROUTE_CHECK:
         return aisle_route_check(self);
+    case AISLE_ROUTE_ORDER:
+        return aisle_route_step_order(self, units);
     case AISLE_ROUTE_TANGENT:
         return aisle_route_step_tangent(self, units);
     case AISLE_ROUTE_NEAREST:

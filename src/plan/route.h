@@ -2,8 +2,11 @@
 //
 // RECALL an answer to the same question (cache.h), give it this request's head and REPROVE it: the answer, flag `cached`
 // set. Spoiled or disproved it is forgotten and the request planned anew. Every answer planned is remembered.
-// CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move), then one way after the other, as
-// route_ways.c lists them for the objective; the best proved path by the objective's own measure is the answer:
+// CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move); ORDER the goals if they may come in
+// any: by the lengths of the exact ways of the disc inside the footprint (tour.h), whatever the objective, with half of
+// the budget at most; what is the best by then is flagged by cause BUDGET beside the path. A goal that no way leads to
+// comes first and is refused like that of a first leg. Then one way after the other, as route_ways.c lists them for the
+// objective; the best proved path by the objective's own measure is the answer:
 //     SHORTEST   length                            SHORT
 //     SAFEST     risk, to 1e-4, then length        SHORT, CLEAR; long bodies also the two GRID ways below
 //     FASTEST    duration                          SHORT, CLEAR, GRID for duration, GRID for energy
@@ -26,7 +29,7 @@
 // planned again for the disc in which it turns; if it turns the seed path down it is built again with stops in all
 // corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
 // not proved) or VERIFY_FAILED.
-// Memory: from the arena, about 0.6 MiB and the searches' cells. Time: at most the budget plus one indivisible piece
+// Memory: from the arena, about 0.7 MiB and the searches' cells, these at least 0.4 MiB. Time: at most the budget plus one indivisible piece
 // of each stage.
 #ifndef AISLE_PLAN_ROUTE_H
 #define AISLE_PLAN_ROUTE_H
@@ -41,6 +44,7 @@
 #include "plan/swarm.h"
 #include "plan/tangent.h"
 #include "plan/taut.h"
+#include "plan/tour.h"
 #include "plan/verify.h"
 #include "plan/why.h"
 #include "wire/codec.h"
@@ -89,6 +93,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_RECALL,
     AISLE_ROUTE_REPROVE, // what was recalled
     AISLE_ROUTE_CHECK,
+    AISLE_ROUTE_ORDER,
     AISLE_ROUTE_TANGENT,
     AISLE_ROUTE_NEAREST,
     AISLE_ROUTE_SEED,
@@ -121,6 +126,7 @@ typedef struct aisle_route {
     aisle_tangent tangent;
     uint32_t tangent_search; // which one, see route_tangent.c
     uint32_t tangent_units;  // spent there
+    aisle_tour tour;
     aisle_seed seed;
     aisle_taut taut;
     aisle_swarm swarm;
@@ -145,6 +151,7 @@ typedef struct aisle_route {
     bool no_way;                         // proved for the leg under way, exactly, by the tangent search
     bool is_wide;                        // tight ways (route_tangent.c) failed
     bool announced;                      // AISLE_PARTIAL was told
+    bool is_cut;                         // the order is not what it would be without a limit of work
     uint32_t spent, budget, proof_units; // work units; what the first build and proof took
     uint32_t budget_default;
     int64_t swarm_evals, nodes, verify_failed, intervals; // counters of this request

@@ -33,7 +33,9 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     aisle_vec2 p = aisle_route_place(stop);
     if (!in_bounds(self, p)) {
         int16_t outside = is_start ? AISLE_STATUS_POSE_OUTSIDE : AISLE_STATUS_GOAL_OUTSIDE;
-        return aisle_route_refuse_at(self, outside, stop->id, 0.0, p);
+        (void)aisle_route_refuse_at(self, outside, stop->id, 0.0, p);
+        aisle_route_name_goal(self, is_start ? 0 : stop->id);
+        return AISLE_OK;
     }
     int32_t id = 0;
     double gap = stop_gap(self, stop, &id);
@@ -41,6 +43,7 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     if (gap < self->vehicle->margin + AISLE_SPACE_SLACK) {
         int16_t occupied = is_start ? AISLE_STATUS_START_OCCUPIED : AISLE_STATUS_GOAL_OCCUPIED;
         (void)aisle_route_refuse_at(self, occupied, id, 0.0, p);
+        aisle_route_name_goal(self, is_start ? 0 : stop->id);
         aisle_nearest_start(&self->nearest, &self->space, (aisle_pose2){stop->x, stop->y, stop->theta},
                             aisle_goal_heading_is_free(stop));
         self->stage = AISLE_ROUTE_NEAREST;
@@ -61,7 +64,7 @@ aisle_status aisle_route_check(aisle_route *self) {
         st = check_stop(self, &request->goals[i], false);
     }
     if (st == AISLE_BUSY) {
-        aisle_route_begin_ways(self);
+        aisle_route_begin_order(self);
     }
     return st == AISLE_PARTIAL ? AISLE_BUSY : st;
 }

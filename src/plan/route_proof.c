@@ -36,6 +36,8 @@ static void seal(aisle_route *self) {
     aisle_path_msg *path = self->path;
     path->planner = any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
     path->work_units = (int32_t)self->spent;
+    path->cause = self->is_cut ? AISLE_STATUS_BUDGET : 0;
+    path->cause_value = self->is_cut ? (float)self->budget : 0.0F;
     float bound = (float)(length_bound(self) * (1.0 - 1e-6));
     path->length_bound = bound < path->length ? bound : path->length;
     aisle_status st = aisle_path_encode(path, self->spare.bytes, AISLE_ROUTE_BYTES, &self->spare.size);

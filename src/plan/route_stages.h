@@ -1,6 +1,7 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST. route_seed.c: SEED, TAUT.
+// route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST.
+// route_order.c: ORDER. route_seed.c: SEED, TAUT.
 // route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
@@ -43,6 +44,11 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
     return st;
 }
 
+// The goal that is not reached; after aisle_route_refuse_at().
+static inline void aisle_route_name_goal(aisle_route *self, int32_t id) {
+    self->told[0].goal_id = id;
+}
+
 // route_cache.c
 aisle_status aisle_route_recall(aisle_route *self);
 aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units);
@@ -67,6 +73,10 @@ aisle_status aisle_route_give_way_up(aisle_route *self, int16_t cause, int32_t i
 double aisle_route_measure(const aisle_route *self);
 // The spare one is proved: it becomes the best if it is the first, better, or asked for by name.
 void aisle_route_judge(aisle_route *self, bool by_name);
+
+// route_order.c: begins ORDER, or the ways if there is nothing to order.
+void aisle_route_begin_order(aisle_route *self);
+aisle_status aisle_route_step_order(aisle_route *self, uint32_t units);
 
 // route_tangent.c
 void aisle_route_begin_tangent(aisle_route *self);
