@@ -130,6 +130,7 @@ typedef enum aisle_counter {
     AISLE_COUNTER_CACHE_KEPT,       // answers remembered that a changed layout does not touch
     AISLE_COUNTER_CACHE_DROPPED,    // and that it does, or may
     AISLE_COUNTER_CACHE_SPOILED,    // answers remembered whose bytes had changed or whose proof failed
+    AISLE_COUNTER_LAYOUT_WORK,      // rows and polygons gone through when layouts and patches were built
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

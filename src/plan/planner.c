@@ -227,6 +227,7 @@ static void step_layout(aisle_planner *self, uint32_t units) {
         count_cache(self);
         self->building = false;
         self->counters[AISLE_COUNTER_LAYOUTS]++;
+        self->counters[AISLE_COUNTER_LAYOUT_WORK] += aisle_layout_work(self->layout);
         aisle_planner_replan(self);
     }
 }

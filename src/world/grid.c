@@ -168,6 +168,10 @@ aisle_status aisle_grid_build(aisle_grid *self, uint32_t rows) {
     return self->phase == PHASE_DONE ? AISLE_OK : AISLE_BUSY;
 }
 
+uint32_t aisle_grid_rows_done(const aisle_grid *self) {
+    return self->phase * self->lattice.h + self->next_row;
+}
+
 // ---- bounds
 
 // Distance between cell centres, m, and how much a point and an obstacle may each be off theirs. Not inside: *q is 0.

@@ -85,6 +85,8 @@ void aisle_grid_mark_run(aisle_grid *self, uint32_t iy, uint32_t ix0, uint32_t e
 // AISLE_OK; further calls repeat AISLE_OK. The field is the same however the build was cut into steps.
 aisle_status aisle_grid_build(aisle_grid *self, uint32_t rows);
 
+uint32_t aisle_grid_rows_done(const aisle_grid *self); // by build() since begin
+
 // After the build. Lower and upper bounds on the distance from p to the nearest obstacle, m; p
 // outside: 0. The lower one may be negative: read as "not known to be free". A saturated cell gives
 // the saturation distance as lower bound and INFINITY as upper bound.

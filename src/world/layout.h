@@ -116,12 +116,14 @@ typedef struct aisle_layout {
     bool has_active;
     uint8_t phase; // of the build
     uint32_t next; // build progress in the phase
+    uint32_t work; // units since the commit, but for those of the whole field
     aisle_layout_staging staging;
     aisle_layout_diff diff;
     aisle_layout_index index; // of the active store
     aisle_layout_index wide;  // of its blocks
     aisle_layout_rects rects; // of its scan
     aisle_grid grid;          // of the active store
+    bool is_whole;            // the grid is or was built from the start, not updated
     bool has_base;            // the staged store is still the one before, and grid was its
     aisle_layout_update update;
 } aisle_layout;
@@ -152,6 +154,8 @@ void aisle_layout_commit(aisle_layout *self);
 // Grid, field and indices come out the same bit for bit whether a patch or a whole layout led to them, and however it was
 // cut. AISLE_BUSY, then AISLE_OK. AISLE_ERR_ARG: nothing was committed.
 aisle_status aisle_layout_build(aisle_layout *self, uint32_t units);
+// Units the build has taken since the commit. O(1).
+uint32_t aisle_layout_work(const aisle_layout *self);
 
 // What the last commit changed; everything before the first. Valid until the next commit or patch taken. O(1).
 const aisle_layout_diff *aisle_layout_changes(const aisle_layout *self);

@@ -49,6 +49,8 @@ void aisle_layout_commit(aisle_layout *self) {
     self->staging.stage = AISLE_STAGE_EMPTY;
     self->phase = self->has_base ? PHASE_INDEX : PHASE_RECTS;
     self->next = 0;
+    self->work = 0;
+    self->is_whole = false;
     aisle_layout_update_begin(&self->update);
 }
 
@@ -108,6 +110,7 @@ static void build_wide(aisle_layout *self) {
 }
 
 static void clear_grid(aisle_layout *self) {
+    self->is_whole = true;
     aisle_layout_active(self)->scan_content = 0;
     const aisle_status status = aisle_grid_begin(&self->grid, &aisle_layout_held(self)->lattice);
     AISLE_ASSERT(status == AISLE_OK); // checked when the layout came
@@ -184,12 +187,18 @@ aisle_status aisle_layout_build(aisle_layout *self, uint32_t units) {
     if (self->phase == PHASE_NONE) {
         return AISLE_ERR_ARG;
     }
-    if (do_items(self, PHASE_UPDATE, &units) && self->phase == PHASE_UPDATE) {
-        update(self, &units);
+    uint32_t left = units;
+    if (do_items(self, PHASE_UPDATE, &left) && self->phase == PHASE_UPDATE) {
+        update(self, &left);
     }
-    if (self->phase > PHASE_UPDATE && do_items(self, PHASE_FIELD, &units) && self->phase == PHASE_FIELD &&
-        aisle_grid_build(&self->grid, units) == AISLE_OK) {
+    const bool is_marked = self->phase > PHASE_UPDATE && do_items(self, PHASE_FIELD, &left);
+    self->work += units - left;
+    if (is_marked && self->phase == PHASE_FIELD && aisle_grid_build(&self->grid, left) == AISLE_OK) {
         self->phase = PHASE_DONE;
     }
     return self->phase == PHASE_DONE ? AISLE_OK : AISLE_BUSY;
+}
+
+uint32_t aisle_layout_work(const aisle_layout *self) {
+    return self->work + (self->is_whole ? aisle_grid_rows_done(&self->grid) : 0U);
 }

@@ -12,6 +12,7 @@ void aisle_layout_update_begin(aisle_layout_update *self) {
     self->band = (aisle_cells){0};
     self->change = 0;
     self->next_row = 0;
+    self->owed = 0;
     self->is_removing = false;
     self->is_window = false;
     self->cells = 0;
@@ -130,14 +131,13 @@ static aisle_cells vacate(aisle_layout *layout, const aisle_raster *raster, aisl
 }
 
 // Does the band's next piece up to the window, if there is one. False: dearer than the whole.
-static bool do_piece(aisle_layout *layout, const aisle_raster *raster, uint32_t *units) {
+static bool do_piece(aisle_layout *layout, const aisle_raster *raster) {
     aisle_layout_update *self = &layout->update;
     aisle_cells piece = self->band;
     const int32_t most = piece.x0 + (int32_t)AISLE_WINDOW_PIECE;
     piece.x1 = piece.x1 < most ? piece.x1 : most;
     self->band.x0 = piece.x1;
-    const uint32_t rows = (uint32_t)(piece.y1 - piece.y0);
-    *units -= rows < *units ? rows : *units;
+    self->owed += (uint32_t)(piece.y1 - piece.y0);
     const aisle_cells changed =
         self->is_removing ? vacate(layout, raster, piece) : replace(layout, raster, piece, ANY_FREE, 0);
     if (changed.x0 >= changed.x1) {
@@ -154,6 +154,12 @@ static bool do_piece(aisle_layout *layout, const aisle_raster *raster, uint32_t 
 aisle_status aisle_layout_update_step(aisle_layout *layout, uint32_t *units) {
     aisle_layout_update *self = &layout->update;
     while (*units > 0) {
+        if (self->owed > 0) {
+            const uint32_t paid = self->owed < *units ? self->owed : *units;
+            self->owed -= paid;
+            *units -= paid;
+            continue;
+        }
         if (self->is_window) {
             self->is_window = aisle_grid_window_step(&self->window, &layout->grid, units) == AISLE_BUSY;
             continue;
@@ -164,7 +170,7 @@ aisle_status aisle_layout_update_step(aisle_layout *layout, uint32_t *units) {
         } else if (!next_band(layout, &raster)) {
             return AISLE_OK;
         }
-        if (!do_piece(layout, &raster, units)) {
+        if (!do_piece(layout, &raster)) {
             return AISLE_ERR_CAPACITY;
         }
     }

@@ -18,6 +18,7 @@ typedef struct aisle_layout_update {
     aisle_cells band;  // in hand; its columns from band.x0 on are still to do
     uint32_t change;   // in hand, of aisle_layout_changes()
     uint32_t next_row; // of its polygon
+    uint32_t owed;     // rows of work done in one go and not counted yet
     bool is_removing;  // what came is in
     bool is_window;    // begun and not done
     uint64_t cells;    // of all windows so far

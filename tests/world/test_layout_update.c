@@ -297,10 +297,34 @@ static void test_the_work_does_not_grow_with_the_map(void) {
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_patch(&fix_layout, &patch, &fix_why));
         aisle_layout_commit(&fix_layout);
         units[map] = units_of_build(1);
+        TEST_ASSERT_UINT32_WITHIN(200, units[map] + 1U, aisle_layout_work(&fix_layout));
         expect_as_fresh();
     }
     TEST_ASSERT_EQUAL_UINT32(units[0], units[1]);
     TEST_ASSERT_TRUE(units[0] < 1200U);
+}
+
+static void test_work_is_what_was_done_however_it_was_cut(void) {
+    for (uint32_t units = 1; units < 4000U; units = units * 5U + 1U) {
+        start(&fix_layout, 0);
+        aisle_rng rng = aisle_rng_seed(605);
+        fix_random_scene(&scene, &rng, 40, 2);
+        fix_send(&scene);
+        aisle_layout_commit(&fix_layout);
+        (void)units_of_build(units);
+        TEST_ASSERT_EQUAL_UINT32(4U + 40U + 1U + 3U * 160U, aisle_layout_work(&fix_layout)); // 200 x 160 cells, no scan
+        new_patch();
+        shift(&scene.polygons[3], 0.1, 0.0);
+        scene.polygons[3].kind = AISLE_POLYGON_OBSTACLE;
+        put(&scene.polygons[3]);
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_patch(&fix_layout, &patch, &fix_why));
+        aisle_layout_commit(&fix_layout);
+        TEST_ASSERT_EQUAL_UINT32(0, aisle_layout_work(&fix_layout));
+        (void)units_of_build(units);
+        static uint32_t want;
+        want = units == 1U ? aisle_layout_work(&fix_layout) : want;
+        TEST_ASSERT_EQUAL_UINT32(want, aisle_layout_work(&fix_layout));
+    }
 }
 
 static void test_zones_that_are_no_obstacles_cost_no_rows(void) {
@@ -430,6 +454,7 @@ int main(void) {
     RUN_TEST(test_walls_longer_than_a_piece_come_move_and_go);
     RUN_TEST(test_any_slicing_of_a_patch_gives_the_same);
     RUN_TEST(test_the_work_does_not_grow_with_the_map);
+    RUN_TEST(test_work_is_what_was_done_however_it_was_cut);
     RUN_TEST(test_zones_that_are_no_obstacles_cost_no_rows);
     RUN_TEST(test_a_part_that_comes_during_the_update_does_no_harm);
     RUN_TEST(test_refused_patches_leave_all_as_it_was);
