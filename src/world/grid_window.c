@@ -125,28 +125,22 @@ static int32_t reach_of(const aisle_grid *grid, int32_t x, int32_t y) { // cells
     return (int32_t)sqrt((double)field_at(grid, x, y)) + 1;             // exact for squares
 }
 
-// Rows further than one cell beyond the reach of every frame cell hold nothing of matter.
+// Of a row of the window no column further out than the reach of the frame's cell in that row, and so of columns.
 static void look_around(aisle_grid_window *self, const aisle_grid *grid) {
     const aisle_cells *box = &self->box;
-    int32_t left = 0;
-    int32_t right = 0;
-    self->rows0 = box->y0;
-    self->rows1 = box->y1;
-    for (int32_t y = box->y0 - 1; y <= box->y1; y++) {
-        const int32_t at_left = reach_of(grid, box->x0 - 1, y);
-        const int32_t at_right = reach_of(grid, box->x1, y);
-        const bool is_beside = y >= box->y0 && y < box->y1;
-        left = is_beside ? most(left, at_left) : left;
-        right = is_beside ? most(right, at_right) : right;
-        self->rows0 = least(self->rows0, y - 1 - most(at_left, at_right));
-        self->rows1 = most(self->rows1, y + 2 + most(at_left, at_right));
+    int32_t reach[4] = {0, 0, 0, 0}; // left, right, before, behind
+    for (int32_t y = box->y0; y < box->y1; y++) {
+        reach[0] = most(reach[0], reach_of(grid, box->x0 - 1, y));
+        reach[1] = most(reach[1], reach_of(grid, box->x1, y));
     }
     for (int32_t x = box->x0; x < box->x1; x++) {
-        self->rows0 = least(self->rows0, box->y0 - 2 - reach_of(grid, x, box->y0 - 1));
-        self->rows1 = most(self->rows1, box->y1 + 2 + reach_of(grid, x, box->y1));
+        reach[2] = most(reach[2], reach_of(grid, x, box->y0 - 1));
+        reach[3] = most(reach[3], reach_of(grid, x, box->y1));
     }
-    self->left = (uint32_t)left;
-    self->right = (uint32_t)right;
+    self->left = (uint32_t)reach[0];
+    self->right = (uint32_t)reach[1];
+    self->rows0 = box->y0 - reach[2];
+    self->rows1 = box->y1 + reach[3];
 }
 
 static uint32_t width_of(const aisle_grid_window *self) {

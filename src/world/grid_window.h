@@ -12,10 +12,10 @@
 // |c - t| - |c - p| >= |c - s| - |c - p| = |p - s|. So distance by the field(c') >= |p - s| - 1/2 and |c' - s| <= |p - s|
 // + 1/2: c' is within. The distance to the rectangle of the changed cells stands for that to the cells: no greater.
 // Nothing further than 255 cells changes, as the field saturates.
-// What is outside is exact, so it tells how far outside the window what matters inside can lie: of the cells beside the
-// frame cell b of a row, none further from b than the field at b says, since b's nearest is nearer to the whole row of
-// the window; and no row further off than a frame cell's distance and one cell (p and c' above, with s what is nearest to
-// a cell of the window). Inside, the transform of the whole build runs (grid_field.h): the field is the same bit for bit.
+// What is outside is exact, so it tells how far outside the window what matters inside can lie. Let b be the frame's cell
+// in the row of a cell c of the window and s an occupied cell further out than b by more columns than b's distance is:
+// then |c - s| >= |c - b| + (columns from b to s) > |c - b| + distance(b) >= distance(c), so s is not nearest to c. The
+// same holds of rows. Inside, the transform of the whole build runs (grid_field.h): the field is the same bit for bit.
 // Column distances beside are counted row by row; those to what is below need a sweep from below first, of which every
 // 32nd row is kept.
 // Where cells became occupied only, the field is lowered to the distances from these: one sweep, and nothing beside

@@ -36,7 +36,7 @@ uint64_t aisle_content_of_polygon(int32_t id, int8_t kind, float value, float di
     for (uint32_t i = 0; i < n; i++) {
         hash = take_double(take_double(hash, v[i].x), v[i].y);
     }
-    return take(hash, n);
+    return hash;
 }
 
 uint64_t aisle_content_of_run(uint32_t iy, uint32_t x0, uint32_t end) {

@@ -48,6 +48,17 @@ static void test_tiles_leave_no_trace_but_every_cell_does(void) {
     }
 }
 
+static void test_what_was_held_before_leaves_no_trace(void) {
+    aisle_rng rng = aisle_rng_seed(174);
+    fix_random_scan(&scene, &rng, 61, 47, 5, 2);
+    const uint64_t content = content_of_scene();
+    for (uint32_t i = 0; i < 4U; i++) { // either store again and again
+        scene.map_revision++;
+        fix_load(&scene);
+        TEST_ASSERT_EQUAL_HEX64(content, aisle_layout_content(&fix_layout));
+    }
+}
+
 static void expect_other(uint64_t content) {
     TEST_ASSERT_TRUE(content_of_scene() != content);
 }
@@ -86,10 +97,12 @@ static void test_every_word_of_a_polygon_counts(void) {
 static void test_polygons_that_swap_their_words_are_told_apart(void) {
     const aisle_vec2 v[3] = {{0, 0}, {1, 0}, {0, 1}};
     const aisle_vec2 swapped[3] = {{0, 1}, {1, 0}, {0, 0}};
+    const aisle_vec2 mirrored[3] = {{0, 0}, {0, 1}, {1, 0}};
     const uint64_t one = aisle_content_of_polygon(1, 2, 0.5F, 0.25F, v, 3);
     TEST_ASSERT_TRUE(one != aisle_content_of_polygon(2, 1, 0.5F, 0.25F, v, 3));
     TEST_ASSERT_TRUE(one != aisle_content_of_polygon(1, 2, 0.25F, 0.5F, v, 3));
     TEST_ASSERT_TRUE(one != aisle_content_of_polygon(1, 2, 0.5F, 0.25F, swapped, 3));
+    TEST_ASSERT_TRUE(one != aisle_content_of_polygon(1, 2, 0.5F, 0.25F, mirrored, 3));
     TEST_ASSERT_TRUE(aisle_content_of_run(1, 2, 3) != aisle_content_of_run(2, 1, 3));
     TEST_ASSERT_TRUE(aisle_content_of_run(1, 2, 4) != aisle_content_of_run(1, 2, 3) + aisle_content_of_run(1, 3, 4));
 }
@@ -98,6 +111,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_revision_parts_map_and_order_leave_no_trace);
     RUN_TEST(test_tiles_leave_no_trace_but_every_cell_does);
+    RUN_TEST(test_what_was_held_before_leaves_no_trace);
     RUN_TEST(test_every_word_of_a_polygon_counts);
     RUN_TEST(test_polygons_that_swap_their_words_are_told_apart);
     return UNITY_END();

@@ -327,6 +327,24 @@ static void test_work_is_what_was_done_however_it_was_cut(void) {
     }
 }
 
+static void test_polygons_that_change_no_cell_are_gone_through_and_no_more(void) {
+    aisle_rng rng = aisle_rng_seed(606);
+    fix_random_scene(&scene, &rng, 0, 1);
+    fix_add_box(&scene, 1, 2.0, 2.0, 6.0, 6.0);
+    fix_load(&scene);
+    new_patch();
+    fix_add_box(&scene, 2, 3.01, 3.01, 3.99, 3.99); // 20 rows, inside
+    put(&scene.polygons[1]);
+    enforce(UINT32_MAX);
+    TEST_ASSERT_EQUAL_UINT32(22, aisle_layout_work(&fix_layout)); // and the indices
+    expect_as_fresh();
+    new_patch();
+    take_away(1);
+    enforce(UINT32_MAX);
+    TEST_ASSERT_EQUAL_UINT32(22, aisle_layout_work(&fix_layout));
+    expect_as_fresh();
+}
+
 static void test_zones_that_are_no_obstacles_cost_no_rows(void) {
     aisle_rng rng = aisle_rng_seed(610);
     fix_random_scene(&scene, &rng, 40, 2);
@@ -455,6 +473,7 @@ int main(void) {
     RUN_TEST(test_any_slicing_of_a_patch_gives_the_same);
     RUN_TEST(test_the_work_does_not_grow_with_the_map);
     RUN_TEST(test_work_is_what_was_done_however_it_was_cut);
+    RUN_TEST(test_polygons_that_change_no_cell_are_gone_through_and_no_more);
     RUN_TEST(test_zones_that_are_no_obstacles_cost_no_rows);
     RUN_TEST(test_a_part_that_comes_during_the_update_does_no_harm);
     RUN_TEST(test_refused_patches_leave_all_as_it_was);
