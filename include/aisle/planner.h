@@ -28,9 +28,10 @@
 // A list in any order is ordered when it is planned; from then on its goals count as reached in that order, by their
 // ids. What is reached stays reached; the others are ordered anew whenever the list is planned again, and only then. A
 // list whose goals share an id, or of an ordering there is not, is refused whole and the mission goes on.
-// Memory of answers: what was answered is remembered by what was asked (start, goals, options, vehicle, layout; no ids or
-// times of messages) and answered again with path_msg.cached set, after a proof on the layout in force. A changed layout
-// keeps what it does not touch (plan/cache.h says by what rule, and what that promises of its length).
+// Memory of answers: what a query was answered is remembered by what it asked (start, goals, options, vehicle, layout; no
+// ids or times of messages), and a query or goal list that asks the same gets it, path_msg.cached set, after a proof on
+// the layout in force. A changed layout keeps what it does not touch (plan/cache.h says by what rule, and what that
+// promises of its length).
 // Threads: one planner, one thread at a time. Planners share nothing.
 #ifndef AISLE_PLANNER_H
 #define AISLE_PLANNER_H

@@ -224,14 +224,18 @@ uint32_t aisle_cache_find(aisle_cache *self, const aisle_cache_question *questio
         aisle_cache_disprove(self, at);
         return AISLE_CACHE_NONE;
     }
-    entry->used = ++self->tick;
+    if (!question->readonly) {
+        entry->used = ++self->tick;
+    }
     *found = (aisle_cache_found){entry->path_size, entry->theta, entry->order, entry->basis};
     return at;
 }
 
 void aisle_cache_confirm(aisle_cache *self, uint32_t entry, const aisle_proof_basis *basis) {
     AISLE_ASSERT(entry < self->capacity && self->entries[entry].in_use);
-    self->entries[entry].basis = *basis;
+    if (basis != NULL) {
+        self->entries[entry].basis = *basis;
+    }
     self->hits++;
 }
 

@@ -6,6 +6,9 @@
 // hands out is given a new head and goes to the verifier like any other path (verify.h; the motion's stamp of its last
 // proof goes along), and bytes that are not those put in are dropped and counted as spoiled.
 //
+// A goal list may be given up while it is planned, at a moment that a replay of the same inputs does not know. So what is
+// remembered must not hang on it: lists find what queries have left (readonly) and leave nothing themselves.
+//
 // Layout changes. An entry is of one layout's content. What a patch changes is known as boxes: an entry of the layout
 // before is taken over to the new one (kept) if
 // 1. no piece of its path comes nearer to a changed polygon's box than the outer radius and, of creep clearance, margin
@@ -51,6 +54,7 @@ typedef struct aisle_cache_question {
     const aisle_options_msg *options;
     const aisle_vehicle *vehicle;
     const aisle_layout *layout;
+    bool readonly; // what is remembered, and what was used last, stay as they are, but for what is spoiled
 } aisle_cache_question;
 
 typedef struct aisle_cache_block {
@@ -114,7 +118,7 @@ typedef struct aisle_cache_found {
 // is none (a miss, counted).
 uint32_t aisle_cache_find(aisle_cache *self, const aisle_cache_question *question, uint8_t *bytes,
                           aisle_cache_found *found);
-// What find() gave was proved, with this stamp (a hit); or it was not: it is dropped.
+// What find() gave was proved (a hit), on this basis from now on if not NULL; or it was not: it is dropped.
 void aisle_cache_confirm(aisle_cache *self, uint32_t entry, const aisle_proof_basis *basis);
 void aisle_cache_disprove(aisle_cache *self, uint32_t entry);
 

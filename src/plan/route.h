@@ -1,7 +1,7 @@
 // route.h - one request from start to proved path or reason: the AUTO pipeline. Level 4.
 //
 // RECALL an answer to the same question (cache.h), give it this request's head and REPROVE it: the answer, flag `cached`
-// set. Spoiled or disproved it is forgotten and the request planned anew. Every answer planned is remembered.
+// set. Spoiled or disproved it is forgotten and the request planned anew. Every answer to a query is remembered.
 // CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move); ORDER the goals if they may come in
 // any: by the lengths of the exact ways of the disc inside the footprint (tour.h), whatever the objective, with half of
 // the budget at most; what is the best by then is flagged by cause BUDGET beside the path. A goal that no way leads to

@@ -12,7 +12,8 @@ static aisle_cache_question question_of(const aisle_route *self) {
                                   .ordering = request->ordering,
                                   .options = &request->options,
                                   .vehicle = self->vehicle,
-                                  .layout = self->layout};
+                                  .layout = self->layout,
+                                  .readonly = !request->is_query};
 }
 
 // A cache that was not carved remembers nothing.
@@ -70,7 +71,7 @@ aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units) {
         return plan(self);
     }
     proof->basis = *aisle_verify_basis(&self->verify);
-    aisle_cache_confirm(&self->cache, self->recalled, &proof->basis);
+    aisle_cache_confirm(&self->cache, self->recalled, self->request.is_query ? &proof->basis : NULL);
     aisle_proof swap = self->best;
     self->best = self->spare;
     self->spare = swap;
@@ -81,7 +82,7 @@ aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units) {
 
 void aisle_route_remember(aisle_route *self) {
     const aisle_proof *best = aisle_route_answer(self);
-    if (best == NULL || !has_memory(self) || self->recalled != AISLE_CACHE_NONE) {
+    if (best == NULL || !has_memory(self) || !self->request.is_query || self->recalled != AISLE_CACHE_NONE) {
         return;
     }
     const aisle_cache_question question = question_of(self);

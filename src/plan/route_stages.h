@@ -52,7 +52,7 @@ static inline void aisle_route_name_goal(aisle_route *self, int32_t id) {
 // route_cache.c
 aisle_status aisle_route_recall(aisle_route *self);
 aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units);
-// The request has ended: its answer is remembered, unless it was.
+// The request has ended: a query's answer is remembered, unless it was.
 void aisle_route_remember(aisle_route *self);
 
 // route_check.c

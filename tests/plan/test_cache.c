@@ -306,6 +306,25 @@ static void test_the_least_recently_used_answer_leaves(void) {
     }
 }
 
+static void test_a_readonly_question_finds_and_leaves_no_trace(void) {
+    for (int i = 0; i < PATHS; i++) {
+        ask_number(i);
+        put(10);
+    }
+    ask_number(0);
+    question.readonly = true;
+    uint32_t at = find();
+    TEST_ASSERT_NOT_EQUAL(AISLE_CACHE_NONE, at);
+    aisle_cache_confirm(&cache, at, NULL);
+    TEST_ASSERT_EQUAL_UINT32(size, cache.entries[at].basis.size);
+    TEST_ASSERT_EQUAL_INT64(1, cache.hits);
+    question.readonly = false;
+    ask_number(PATHS);
+    put(10);
+    ask_number(0);
+    TEST_ASSERT_FALSE(is_known()); // was the least recently used all the same
+}
+
 static void test_the_same_question_takes_the_place_of_the_old_answer(void) {
     put(10);
     put(20);
@@ -620,6 +639,7 @@ int main(void) {
     RUN_TEST(test_an_equal_hash_alone_is_no_hit);
     RUN_TEST(test_padding_of_messages_is_no_part_of_the_question);
     RUN_TEST(test_the_least_recently_used_answer_leaves);
+    RUN_TEST(test_a_readonly_question_finds_and_leaves_no_trace);
     RUN_TEST(test_the_same_question_takes_the_place_of_the_old_answer);
     RUN_TEST(test_a_long_path_takes_the_place_of_several);
     RUN_TEST(test_blocks_are_neither_lost_nor_shared);

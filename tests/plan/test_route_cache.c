@@ -2,6 +2,9 @@
 
 #include "door.h"
 
+#include <stdio.h>
+#include <stdlib.h>
+
 enum { BOXES = 14, QUESTIONS = 12, OTHER = 1 };
 
 static aisle_pose_msg here;
@@ -138,6 +141,33 @@ static void test_a_query_s_answer_serves_a_goal_list(void) {
     door_wait(600000, &here); // its lease is renewed like any other's
     TEST_ASSERT_EQUAL_INT32(1, door_path.path_revision);
     TEST_ASSERT_GREATER_THAN_INT(1, door_paths);
+}
+
+// Whether a list was planned to its end or given up before is a matter of time alone: later answers show none of it.
+static void test_a_goal_list_leaves_nothing_that_later_answers_show(void) {
+    int32_t units[2][2];
+    for (int given_up = 0; given_up < 2; given_up++) {
+        setUp();
+        here = door_pose(10.0, 10.0, 0.5);
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+        aisle_goal_list_msg goals = door_goals(1, 20.0, 10.0);
+        aisle_query_msg query = question(5);
+        query.options = goals.options;
+        query.start = (aisle_goal_msg){.x = 10.0, .y = 10.0, .theta = 0.5};
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+        if (given_up == 0) {
+            door_settle();
+        }
+        aisle_command_msg cancel = {.command = AISLE_COMMAND_CANCEL, .command_id = 3};
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_COMMAND, &cancel));
+        door_settle();
+        door_forget();
+        for (int i = 0; i < 2; i++) {
+            TEST_ASSERT_EQUAL_INT8(i, door_ask(&query)->cached);
+            units[given_up][i] = door_reply.work_units;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT32_ARRAY(units[0], units[1], 2);
 }
 
 static void test_answers_without_a_path_are_planned_every_time(void) {
@@ -530,11 +560,33 @@ static void test_kept_answers_of_other_bodies_and_objectives_are_proved_and_good
     }
 }
 
-int main(void) {
+// The same at length, by hand: test_route_cache SEEDS.
+static void sweep(uint64_t seeds) {
+    const aisle_vehicle_msg bodies[] = {
+        {.vehicle_revision = 1, .footprint_radius = 0.4F, .margin = 0.1F},
+        {.vehicle_revision = 1, .footprint_radius = 0.8F, .margin = 0.1F},
+        {.vehicle_revision = 1},
+        {.vehicle_revision = 1, .num_vertices = 4, .footprint = {{-1.2, -0.5}, {1.2, -0.5}, {1.2, 0.5}, {-1.2, 0.5}}}};
+    setUp();
+    for (uint64_t seed = 100; seed < 100U + seeds; seed++) {
+        for (int8_t objective = AISLE_OPTIONS_SAFEST; objective <= AISLE_OPTIONS_LEAST_ENERGY; objective++) {
+            for (size_t i = 0; i < sizeof bodies / sizeof bodies[0]; i++) {
+                (void)run(&bodies[i], seed, objective, objective == AISLE_OPTIONS_SHORTEST ? 1000 : 100);
+            }
+        }
+    }
+}
+
+int main(int argc, char **argv) {
     UNITY_BEGIN();
+    if (argc > 1) {
+        sweep(strtoul(argv[1], NULL, 10));
+        return UNITY_END();
+    }
     RUN_TEST(test_a_question_asked_again_is_answered_from_memory);
     RUN_TEST(test_a_remembered_answer_has_the_head_of_a_fresh_one);
     RUN_TEST(test_a_query_s_answer_serves_a_goal_list);
+    RUN_TEST(test_a_goal_list_leaves_nothing_that_later_answers_show);
     RUN_TEST(test_answers_without_a_path_are_planned_every_time);
     RUN_TEST(test_a_forgetful_planner_remembers_nothing);
     RUN_TEST(test_another_vehicle_is_asked_for_anew_and_the_old_one_remembered);
