@@ -122,6 +122,31 @@ static void test_a_remembered_answer_has_the_head_of_a_fresh_one(void) {
     TEST_ASSERT_EQUAL_MEMORY(fresh, remembered, size);
 }
 
+// The best order is found once: remembered, it is taken as it was, whatever order the goals are told in is another question.
+static void test_goals_in_any_order_are_remembered_with_their_order(void) {
+    aisle_query_msg query = question(5);
+    const double x[4] = {25.0, 12.0, 20.0, 5.0};
+    query.ordering = AISLE_GOAL_LIST_ANY_ORDER;
+    query.num_goals = 4;
+    for (int16_t i = 0; i < 4; i++) {
+        query.goals[i] = (aisle_goal_msg){.id = 20 + i, .x = x[i], .y = 5.0 + i, .tolerance_theta = 4.0F};
+    }
+    first = *door_ask(&query);
+    TEST_ASSERT_EQUAL_INT8(0, first.cached);
+    TEST_ASSERT_EQUAL_INT8(1, door_ask(&query)->cached);
+    assert_same_way(&first, &door_reply);
+    TEST_ASSERT_EQUAL_INT64(0, count(AISLE_COUNTER_CACHE_SPOILED));
+    query.ordering = AISLE_GOAL_LIST_ORDERED;
+    TEST_ASSERT_EQUAL_INT8(0, door_ask(&query)->cached);
+    TEST_ASSERT_TRUE(door_reply.length > first.length);
+    query.ordering = AISLE_GOAL_LIST_ANY_ORDER;
+    aisle_goal_msg swap = query.goals[0];
+    query.goals[0] = query.goals[1];
+    query.goals[1] = swap;
+    TEST_ASSERT_EQUAL_INT8(0, door_ask(&query)->cached);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, first.length, door_reply.length);
+}
+
 static void test_a_query_s_answer_serves_a_goal_list(void) {
     here = door_pose(10.0, 10.0, 0.5);
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
@@ -474,6 +499,12 @@ static void open_both(const aisle_vehicle_msg *vehicle, uint64_t seed, int8_t ob
             asked[q].goals[1] = (aisle_goal_msg){.id = 12, .x = b.x, .y = b.y, .tolerance_theta = 4.0F, .dwell = 1.0F};
             asked[q].goals[0].dwell = 2.0F;
         }
+        for (int16_t i = 1; q % 4 == 1 && i < 4; i++) {
+            b = uniform_point(&rng, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(29.0, 19.0));
+            asked[q].ordering = AISLE_GOAL_LIST_ANY_ORDER;
+            asked[q].num_goals = (int16_t)(i + 1);
+            asked[q].goals[i] = (aisle_goal_msg){.id = 11 + i, .x = b.x, .y = b.y, .tolerance_theta = 4.0F};
+        }
     }
 }
 
@@ -544,7 +575,7 @@ static tally run(const aisle_vehicle_msg *vehicle, uint64_t seed, int8_t objecti
 static void test_kept_answers_of_a_disc_are_as_short_as_planned_ones(void) {
     const aisle_vehicle_msg disc = {.vehicle_revision = 1, .footprint_radius = 0.4F, .margin = 0.1F};
     tally sum = run(&disc, 1, AISLE_OPTIONS_SHORTEST, 400);
-    TEST_ASSERT_GREATER_THAN_INT(100, sum.hits);
+    TEST_ASSERT_GREATER_THAN_INT(60, sum.hits);
     TEST_ASSERT_TRUE(sum.worst <= 1.0 + 1e-3);
 }
 
@@ -553,10 +584,10 @@ static void test_kept_answers_of_other_bodies_and_objectives_are_proved_and_good
     const aisle_vehicle_msg body = {.vehicle_revision = 1};
     static const int8_t objectives[] = {AISLE_OPTIONS_SAFEST, AISLE_OPTIONS_FASTEST, AISLE_OPTIONS_LEAST_ENERGY};
     tally sum = run(&body, 2, AISLE_OPTIONS_SHORTEST, 100);
-    TEST_ASSERT_GREATER_THAN_INT(20, sum.hits);
+    TEST_ASSERT_GREATER_THAN_INT(12, sum.hits);
     for (uint64_t i = 0; i < 3; i++) {
         sum = run(&disc, 3 + i, objectives[i], 60);
-        TEST_ASSERT_GREATER_THAN_INT(8, sum.hits);
+        TEST_ASSERT_GREATER_THAN_INT(4, sum.hits);
     }
 }
 
@@ -585,6 +616,7 @@ int main(int argc, char **argv) {
     }
     RUN_TEST(test_a_question_asked_again_is_answered_from_memory);
     RUN_TEST(test_a_remembered_answer_has_the_head_of_a_fresh_one);
+    RUN_TEST(test_goals_in_any_order_are_remembered_with_their_order);
     RUN_TEST(test_a_query_s_answer_serves_a_goal_list);
     RUN_TEST(test_a_goal_list_leaves_nothing_that_later_answers_show);
     RUN_TEST(test_answers_without_a_path_are_planned_every_time);
