@@ -53,7 +53,8 @@ static void test_memsize_is_0_for_limits_out_of_range(void) {
     const aisle_limits bad[] = {{.cells = 4095U},         {.cells = AISLE_LIMITS_CELLS_MAX + 1U},
                                 {.polygons = 4097U},      {.vertices = 2U},
                                 {.vertices = 65537U},     {.open_nodes = 1023U},
-                                {.open_nodes = 4194305U}, {.requests = 65U}, {.cached_paths = 1025U}};
+                                {.open_nodes = 4194305U}, {.requests = 65U},
+                                {.cached_paths = 1025U}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         TEST_ASSERT_EQUAL_size_t(0, aisle_planner_memsize(&bad[i]));
     }
