@@ -22,6 +22,11 @@ bool aisle_goal_heading_is_free(const aisle_goal_msg *goal) {
     return (double)goal->tolerance_theta >= 3.14159;
 }
 
+bool aisle_goal_wants_turn(const aisle_goal_msg *goal, double theta) {
+    double tolerance = goal->tolerance_theta > 0.0F ? (double)goal->tolerance_theta : 0.05;
+    return !aisle_goal_heading_is_free(goal) && fabs(aisle_angle_difference(theta, goal->theta)) > 0.5 * tolerance;
+}
+
 // An arc no wider than what the seed's legs keep from everything is free by construction (curve.h); the verifier will
 // not take that for granted.
 static bool arc_is_sure(const aisle_compose *self, const aisle_waypoint_msg *to) {
@@ -97,12 +102,12 @@ static void lay_way(aisle_compose *self, aisle_curve *curve, const aisle_leg *le
 static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
     const aisle_leg *leg = &self->request.legs[i];
     const aisle_goal_msg *goal = &self->request.goals[i];
-    if (leg->count >= 2U) { // else the goal is where the leg begins: only the heading may be left to do
+    if (leg->piece_count > 0U) {
+        aisle_curve_pieces(curve, self->request.pieces + leg->piece_first, leg->piece_count);
+    } else if (leg->count >= 2U) { // else the goal is where the leg begins: only the heading may be left to do
         lay_way(self, curve, leg);
     }
-    double tolerance = goal->tolerance_theta > 0.0F ? (double)goal->tolerance_theta : 0.05;
-    if (!aisle_goal_heading_is_free(goal) &&
-        fabs(aisle_angle_difference(curve->w[curve->n - 1U].theta, goal->theta)) > 0.5 * tolerance) {
+    if (aisle_goal_wants_turn(goal, curve->w[curve->n - 1U].theta)) {
         aisle_curve_turn_to(curve, goal->theta);
     }
     aisle_curve_goal(curve, goal->id);
@@ -127,6 +132,9 @@ bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *re
 // Heading with which the first leg leaves.
 static double first_heading(aisle_compose *self) {
     const aisle_leg *leg = &self->request.legs[0];
+    if (leg->piece_count > 0U) {
+        return self->request.pieces[leg->piece_first].theta;
+    }
     if (leg->count < 2U) {
         return self->request.start->theta;
     }

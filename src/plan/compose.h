@@ -1,7 +1,7 @@
 // compose.h - from planned legs to a complete path_t: pieces, clearances, speeds, sums. Level 4.
 //
 // Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines
-// with arcs); a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are halved
+// with arcs), manoeuvres are taken as they are; a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are halved
 // down to AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and
 // zones follow the place; straight ones that keep the creep clearance only down to AISLE_COMPOSE_JOIN, and those that
 // keep it nowhere only to half of that, unless the objective is SAFEST: no other asks by how much. Straight neighbours
@@ -24,8 +24,9 @@ typedef struct aisle_compose_request {
     const aisle_space *space;
     const aisle_objective *objective;
     const aisle_options_msg *options;
-    const aisle_vec2 *points; // seed polylines of all legs
-    aisle_leg *legs;          // their seed_value or swarm_value is written
+    const aisle_vec2 *points;         // seed polylines of all legs
+    const aisle_waypoint_msg *pieces; // and their manoeuvres
+    aisle_leg *legs;                  // their seed_value or swarm_value is written
     uint32_t leg_count;
     const aisle_goal_msg *start; // heading free if tolerance_theta >= pi
     const aisle_goal_msg *goals; // [leg_count]
@@ -67,4 +68,6 @@ aisle_status aisle_compose_step(aisle_compose *self, uint32_t units, uint32_t *s
 
 // Any heading will do?
 bool aisle_goal_heading_is_free(const aisle_goal_msg *goal);
+// Arriving with this heading (rad), must the body turn there? Half the goal's tolerance is kept for the way's end.
+bool aisle_goal_wants_turn(const aisle_goal_msg *goal, double theta);
 #endif

@@ -16,6 +16,11 @@ typedef struct aisle_leg {
     bool is_clear;         // of obstacles by the creep clearance: no swarm makes it safer
     double bound;          // m, no way of this leg is shorter
     uint32_t attempt;      // at its seed
+    uint32_t piece_first;  // of the manoeuvre that stands for its polyline, in the route's pieces
+    uint32_t piece_count;  // waypoints of it, where the leg begins included; 0: there is none
+    bool searched;         // for a manoeuvre
+    bool heading_is_free;  // where the leg begins
+    double heading;        // rad, there, else
     double seed_value, swarm_value; // measured cost of either way of building it; negative = not measured
     aisle_vec2 via[AISLE_SWARM_VIAS + 2U];
 } aisle_leg;

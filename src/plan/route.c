@@ -4,17 +4,18 @@
 
 #include <string.h>
 
-// No leg is searched both ways at a time: the tangent search lies where the grid search does. Nor is anything searched
-// while an order is computed.
+// No leg is searched two ways at a time: the tangent search and that of manoeuvres lie where the grid search does. Nor
+// is anything searched while an order is computed.
 static void carve_searches(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_arena shared = *arena;
-    aisle_arena table = *arena;
-    aisle_tangent_carve(&self->tangent, &shared, limits);
-    aisle_tour_carve_shared(&self->tour, &table);
+    aisle_arena shared[3] = {*arena, *arena, *arena};
+    aisle_tangent_carve(&self->tangent, &shared[0], limits);
+    aisle_manoeuvre_carve(&self->manoeuvre, &shared[1], limits);
+    aisle_tour_carve_shared(&self->tour, &shared[2]);
     aisle_seed_carve(&self->seed, arena, limits);
-    arena->overflow = arena->overflow || shared.overflow || table.overflow;
-    arena->used = arena->used > shared.used ? arena->used : shared.used;
-    arena->used = arena->used > table.used ? arena->used : table.used;
+    for (uint32_t i = 0; i < 3U; i++) {
+        arena->overflow = arena->overflow || shared[i].overflow;
+        arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
+    }
 }
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
@@ -24,7 +25,12 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
     aisle_swarm_carve(&self->swarm, arena);
     aisle_paper_swarm_carve(&self->paper, arena);
     aisle_compose_carve(&self->compose, arena);
-    self->points = (aisle_vec2 *)aisle_arena_take(arena, AISLE_ROUTE_POINTS, sizeof(aisle_vec2));
+    self->points = // and one for each leg that begins at its goal
+        (aisle_vec2 *)aisle_arena_take(arena, AISLE_ROUTE_POINTS + AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_vec2));
+    for (uint32_t i = 0; i < 2U; i++) {
+        self->guide[i].points = (aisle_vec2 *)aisle_arena_take(arena, AISLE_SEED_POINTS_MAX, sizeof(aisle_vec2));
+    }
+    self->pieces = (aisle_waypoint_msg *)aisle_arena_take(arena, AISLE_ROUTE_PIECES, sizeof(aisle_waypoint_msg));
     self->legs = (aisle_leg *)aisle_arena_take(arena, AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_leg));
     self->path = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
     self->decoded = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
@@ -74,6 +80,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->is_cut = false;
     self->leg = 0;
     self->point_count = 0;
+    self->piece_count = 0;
     self->best.ready = self->best.told = false;
     self->spare.ready = self->spare.told = false;
     self->stops = false;
@@ -104,6 +111,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_order(self, units);
     case AISLE_ROUTE_TANGENT:
         return aisle_route_step_tangent(self, units);
+    case AISLE_ROUTE_MANOEUVRE:
+        return aisle_route_step_manoeuvre(self, units);
     case AISLE_ROUTE_NEAREST:
         return aisle_route_step_nearest(self, units);
     case AISLE_ROUTE_SEED:

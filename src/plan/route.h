@@ -29,14 +29,15 @@
 // planned again for the disc in which it turns; if it turns the seed path down it is built again with stops in all
 // corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
 // not proved) or VERIFY_FAILED.
-// Memory: from the arena, about 0.7 MiB and the searches' cells, these at least 0.4 MiB. Time: at most the budget plus one indivisible piece
-// of each stage.
+// Memory: from the arena, about 0.8 MiB and the searches' cells, these at least 0.4 MiB. Time: at most the budget plus
+// one indivisible piece of each stage.
 #ifndef AISLE_PLAN_ROUTE_H
 #define AISLE_PLAN_ROUTE_H
 
 #include "plan/cache.h"
 #include "plan/compose.h"
 #include "plan/leg.h"
+#include "plan/manoeuvre.h"
 #include "plan/nearest.h"
 #include "plan/opening.h"
 #include "plan/paper_swarm.h"
@@ -50,6 +51,7 @@
 #include "wire/codec.h"
 
 #define AISLE_ROUTE_POINTS 2048U                                // of all legs' seed polylines
+#define AISLE_ROUTE_PIECES 768U                                 // waypoints of all legs' manoeuvres
 #define AISLE_ROUTE_STRIDE 0.1                                  // m
 #define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
 #define AISLE_ROUTE_BYTES AISLE_CACHE_PATH_MAX                  // of an encoded path_t: 54 a waypoint and the head
@@ -95,6 +97,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_CHECK,
     AISLE_ROUTE_ORDER,
     AISLE_ROUTE_TANGENT,
+    AISLE_ROUTE_MANOEUVRE,
     AISLE_ROUTE_NEAREST,
     AISLE_ROUTE_SEED,
     AISLE_ROUTE_TAUT,
@@ -109,6 +112,13 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_SIDES, // the same by the tangent search, for a gap too little too narrow for the grid
     AISLE_ROUTE_END
 } aisle_route_stage;
+
+typedef struct aisle_route_guide { // a way that is none for the body as it is; it leads the search for a manoeuvre
+    aisle_vec2 *points;            // [AISLE_SEED_POINTS_MAX]
+    uint32_t count;                // 0: there is none
+    double radius;                 // m, its corners'
+    double reach;                  // m, the disc's that it is a way for, with what it keeps
+} aisle_route_guide;
 
 typedef struct aisle_route {
     const aisle_layout *layout;
@@ -126,6 +136,11 @@ typedef struct aisle_route {
     aisle_tangent tangent;
     uint32_t tangent_search; // which one, see route_tangent.c
     uint32_t tangent_units;  // spent there
+    aisle_manoeuvre manoeuvre;
+    aisle_route_guide guide[2]; // of the leg under way: the tightest way and the widest one found
+    bool other_guide;           // the second one leads
+    aisle_waypoint_msg *pieces; // [AISLE_ROUTE_PIECES]
+    uint32_t piece_count;
     aisle_tour tour;
     aisle_seed seed;
     aisle_taut taut;

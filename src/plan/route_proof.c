@@ -90,6 +90,7 @@ aisle_compose_request aisle_route_build_request(aisle_route *self) {
                                    .objective = &self->objective,
                                    .options = &self->request.options,
                                    .points = self->points,
+                                   .pieces = self->pieces,
                                    .legs = self->legs,
                                    .leg_count = (uint32_t)self->request.num_goals,
                                    .start = &self->request.start,
@@ -236,7 +237,7 @@ static void begin_swarm_leg(aisle_route *self) {
     for (; self->leg < (uint32_t)self->request.num_goals; self->leg++) {
         aisle_leg *leg = &self->legs[self->leg];
         aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
-        if (leg->count >= 2U && !leg->is_clear && left_for_swarm(self) > 0U &&
+        if (leg->piece_count == 0U && leg->count >= 2U && !leg->is_clear && left_for_swarm(self) > 0U &&
             aisle_swarm_start(&self->swarm, &self->space, &self->objective, &self->request.options,
                               self->points + leg->first, leg->count) == AISLE_OK) {
             return;

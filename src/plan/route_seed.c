@@ -34,6 +34,9 @@ static bool attempt_of(const aisle_route *self, uint32_t n, aisle_space_mode *mo
 }
 
 void aisle_route_end_attempts(aisle_route *self) {
+    if (!self->no_way && aisle_route_begin_manoeuvre(self)) {
+        return;
+    }
     if (self->way_index == 0U) {
         aisle_route_begin_why(self, coarse_stride(self));
     } else {
@@ -63,6 +66,14 @@ void aisle_route_begin_seed(aisle_route *self, uint32_t n) {
     aisle_route_end_attempts(self);
 }
 
+// At a goal where the leg begins: can the body turn as it must?
+static bool turns_there(aisle_route *self) {
+    aisle_leg *leg = &self->legs[self->leg];
+    self->points[leg->first] = aisle_route_place(&self->request.goals[self->leg]);
+    leg->count = 1;
+    return aisle_route_ends_free(self);
+}
+
 static void begin_leg(aisle_route *self) {
     aisle_leg *leg = &self->legs[self->leg];
     aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
@@ -70,8 +81,23 @@ static void begin_leg(aisle_route *self) {
     double beeline = aisle_vec2_distance(from, to);
     self->no_way = false;
     double bound = self->way_index == 0U ? beeline : leg->bound; // the first way's search has raised it
-    *leg = (aisle_leg){.first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0, .bound = bound};
-    if (beeline < 1e-6) { // there already
+    uint32_t pieces = self->way_index == 0U && !self->is_wide ? 0U : leg->piece_count;
+    *leg = (aisle_leg){.first = self->point_count,
+                       .seed_value = -1.0,
+                       .swarm_value = -1.0,
+                       .bound = bound,
+                       .piece_first = leg->piece_first,
+                       .piece_count = pieces,
+                       .searched = pieces > 0U,
+                       .mode = pieces > 0U ? AISLE_SPACE_ALONG : AISLE_SPACE_FREE_TURN};
+    self->guide[0].count = self->guide[1].count = 0;
+    aisle_route_take_heading(self);
+    if (pieces > 0U) { // no way for the body but this manoeuvre was found: it serves every objective
+        self->stage = AISLE_ROUTE_SEED;
+        self->seed.phase = AISLE_SEED_DONE;
+    } else if (beeline < 1e-6 && !turns_there(self) && aisle_route_begin_manoeuvre(self)) {
+        return;
+    } else if (beeline < 1e-6) { // there already
         self->stage = AISLE_ROUTE_SEED;
         leg->count = 1;
         self->points[self->point_count++] = from;
@@ -113,7 +139,7 @@ static aisle_status give_up(aisle_route *self, double needed) {
 
 aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
     aisle_leg *leg = &self->legs[self->leg];
-    if (self->seed.phase == AISLE_SEED_DONE) { // start = goal
+    if (self->seed.phase == AISLE_SEED_DONE) { // start = goal, or the way is known
         aisle_route_next_leg(self);
         return AISLE_BUSY;
     }

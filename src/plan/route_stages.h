@@ -1,7 +1,7 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
 // route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST.
-// route_order.c: ORDER. route_seed.c: SEED, TAUT.
+// route_order.c: ORDER. route_tangent.c: TANGENT. route_manoeuvre.c: MANOEUVRE. route_seed.c: SEED, TAUT.
 // route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
@@ -83,6 +83,22 @@ void aisle_route_begin_tangent(aisle_route *self);
 // A leg on which the grid sees no way though there is one: its shortest way is the seed.
 void aisle_route_begin_slit(aisle_route *self);
 aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units);
+
+// route_manoeuvre.c
+
+// Does heading matter to the vehicle at all? Not to a disc that turns on the spot.
+bool aisle_route_has_heading(const aisle_route *self);
+// The heading with which the leg under way begins, from the start's or the last leg's end.
+void aisle_route_take_heading(aisle_route *self);
+// Can the body turn at both ends of the leg's polyline as it must; a car: must it not?
+bool aisle_route_ends_free(aisle_route *self);
+// Keeps the leg's polyline, a way for a disc of `reach` (m) whose corners are rounded by `radius`, as what leads the
+// search: the first one and the last one kept.
+void aisle_route_keep_guide(aisle_route *self, double radius, double reach);
+// Begins the search for a manoeuvre on the leg under way; false: it was searched before, or heading does not matter. In
+// the first way alone: what it finds serves the later ones.
+bool aisle_route_begin_manoeuvre(aisle_route *self);
+aisle_status aisle_route_step_manoeuvre(aisle_route *self, uint32_t units);
 
 // route_seed.c
 

@@ -14,6 +14,7 @@ static const double searched[] = {0.0, 0.1, 0.4, 1.0};
 #define SEARCHES (sizeof searched / sizeof searched[0])
 #define BOUND 0U
 #define TURNING (SEARCHES - 1U)
+#define GUIDE 0.02 // of the same: about which circles a way is pulled that only leads a search
 
 static double radius_at(const aisle_route *self, double part) {
     const aisle_vehicle *vehicle = self->vehicle;
@@ -74,17 +75,45 @@ static bool take_tight_way(aisle_route *self) {
     return false;
 }
 
-// Takes the way found if it is one for the body. The turning disc's own way is.
+// The turning disc's way is one for every body that turns on the spot.
+static bool take_wide_way(aisle_route *self) {
+    double radius = radius_at(self, 1.0);
+    return take_way(self, radius) &&
+           radius * self->vehicle->curvature_max >= (self->vehicle->curvature_max > 0.0 ? 1.0 : 0.0);
+}
+
+// Takes the way found if it is one for the body, else it may lead a search for one.
 static bool take(aisle_route *self) {
-    if (self->tangent_search == TURNING || aisle_vehicle_is_disc(self->vehicle)) {
-        return take_way(self, radius_at(self, 1.0));
+    bool wide = self->tangent_search == TURNING || aisle_vehicle_is_disc(self->vehicle);
+    double radius = radius_at(self, wide ? 1.0 : aisle_max(GUIDE, searched[self->tangent_search]));
+    bool may_drive = wide ? take_wide_way(self) : !self->is_wide && take_tight_way(self);
+    if (may_drive && aisle_route_ends_free(self)) {
+        return true;
     }
-    return !self->is_wide && take_tight_way(self);
+    if (self->legs[self->leg].is_slit) {
+        return may_drive;
+    }
+    if (take_way(self, radius)) {
+        aisle_route_keep_guide(self, radius, self->tangent.radius);
+    }
+    self->legs[self->leg].tangent_radius = 0.0;
+    return false;
+}
+
+// None of the ways is one for the body as it is.
+static void end_searches(aisle_route *self) {
+    if (!aisle_route_begin_manoeuvre(self)) {
+        aisle_route_begin_seed(self, 0);
+    }
 }
 
 static void go_on(aisle_route *self, bool found) {
     aisle_leg *leg = &self->legs[self->leg];
     if (self->way->kind == AISLE_WAY_GRID && !leg->is_slit) {
+        if (found && take_way(self, radius_at(self, GUIDE))) {
+            aisle_route_keep_guide(self, leg->tangent_radius, self->tangent.radius);
+            leg->tangent_radius = 0.0;
+        }
         aisle_route_begin_seed(self, 0);
     } else if (found && take(self)) {
         leg->is_clear = self->way->kind == AISLE_WAY_CLEAR && !leg->is_slit;
@@ -101,7 +130,7 @@ static void go_on(aisle_route *self, bool found) {
         bool straight_on = aisle_vehicle_is_disc(self->vehicle) || self->is_wide;
         search(self, straight_on ? TURNING : self->tangent_search + 1U);
     } else {
-        aisle_route_begin_seed(self, 0);
+        end_searches(self);
     }
 }
 
@@ -123,7 +152,7 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
         self->no_way = true;
         aisle_route_end_attempts(self);
     } else if (st == AISLE_PARTIAL && !self->legs[self->leg].is_slit) { // nor is there one for anything wider
-        aisle_route_begin_seed(self, 0);
+        end_searches(self);
     } else {
         go_on(self, st == AISLE_OK);
     }

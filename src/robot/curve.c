@@ -174,6 +174,19 @@ void aisle_curve_biarc_to(aisle_curve *self, aisle_vec2 p, aisle_vec2 tangent) {
     arc_to(self, t0, p);
 }
 
+void aisle_curve_pieces(aisle_curve *self, const aisle_waypoint_msg *w, uint32_t n) {
+    aisle_curve_turn_to(self, w[0].theta);
+    last(self)->theta = w[0].theta;
+    last(self)->flags |= w[0].flags;
+    for (uint32_t i = 1; i < n; i++) {
+        if (self->n >= self->capacity) {
+            self->overflow = true;
+            return;
+        }
+        self->w[self->n++] = w[i];
+    }
+}
+
 void aisle_curve_goal(aisle_curve *self, int32_t id) {
     aisle_waypoint_msg *at = last(self);
     if ((at->flags & AISLE_WAYPOINT_GOAL) != 0) { // a second goal at this place: a turn by nothing

@@ -55,6 +55,9 @@ void aisle_curve_polyline(aisle_curve *self, const aisle_vec2 *points, uint32_t 
 // Appends biarcs to p with tangent direction (unit length) there; the curve's present heading is the first tangent.
 void aisle_curve_biarc_to(aisle_curve *self, aisle_vec2 p, aisle_vec2 tangent);
 
+// Appends ready pieces: w[0] is where they begin, the curve's present place; turns to its heading before.
+void aisle_curve_pieces(aisle_curve *self, const aisle_waypoint_msg *w, uint32_t n);
+
 // Marks the last waypoint as goal `id` and as a stop; if it is a goal already, a turn on the spot by nothing goes in
 // between.
 void aisle_curve_goal(aisle_curve *self, int32_t id);

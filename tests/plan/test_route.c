@@ -298,11 +298,11 @@ static void test_a_bend_no_body_can_take_is_kinematic_with_its_place(void) {
 }
 
 static void test_curves_a_vehicle_cannot_drive_are_kinematic(void) {
-    hall_vehicle.curvature_max = 0.5; // 2 m, in a hall where the turns need less
+    hall_vehicle.curvature_max = 0.5; // 2 m; an aisle of 1 m about a block leaves the body 5 cm to either side
     hall_begin(6.0, 4.0);
-    hall_add(2.0, 1.2, 4.0, 2.8);
+    hall_add(1.0, 1.0, 5.0, 3.0);
     open_hall();
-    ask(AISLE_OPTIONS_AUTO, 1.0, 2.0, 5.0, 2.0);
+    ask(AISLE_OPTIONS_AUTO, 0.5, 2.0, 5.5, 2.0);
     (void)plan(1000);
     refused_with(AISLE_STATUS_KINEMATIC);
 }
@@ -359,7 +359,7 @@ static void test_memory_is_about_what_the_header_says(void) {
     aisle_limits least = {4096U, 1U, 3U, 1024U, 1U, 1U};
     static aisle_route measured;
     aisle_route_carve(&measured, &arena, &least);
-    TEST_ASSERT_TRUE(arena.used < 1100U << 10);
+    TEST_ASSERT_TRUE(arena.used < 1300U << 10);
 }
 
 static void test_the_papers_method_gives_a_proved_path_of_its_own_or_a_plain_refusal(void) {

@@ -1,0 +1,126 @@
+#include "plan/togo.h"
+
+#include "base/check.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STRAIGHT 5U
+#define DIAGONAL 7U
+#define CELLS_A_UNIT 32U
+#define WORTH_SHARE 1.5 // of the start's cost, how far the search goes on
+#define WORTH_MORE 10.0 // m, and beyond
+
+void aisle_togo_carve(aisle_togo *self, aisle_arena *arena, uint32_t cells) {
+    self->capacity = cells / AISLE_TOGO_SHARE + 256U;
+    self->cost = (uint16_t *)aisle_arena_take(arena, self->capacity, sizeof(uint16_t));
+    self->room = self->capacity < AISLE_TOGO_QUEUE ? self->capacity : AISLE_TOGO_QUEUE;
+    self->queue = (uint32_t *)aisle_arena_take(arena, (size_t)AISLE_TOGO_RING * self->room, sizeof(uint32_t));
+}
+
+static uint32_t cell_of(const aisle_togo *self, aisle_vec2 p) {
+    uint32_t fine = aisle_lattice_cell(&self->grid->lattice, p, NULL);
+    uint32_t ix = fine % self->grid->lattice.w / self->stride;
+    uint32_t iy = fine / self->grid->lattice.w / self->stride;
+    return iy * self->w + ix;
+}
+
+// One that finds no room in its bucket is left out: it is a guide only, and its neighbours come to it again.
+static void reach(aisle_togo *self, uint32_t cell, uint32_t cost) {
+    uint32_t bucket = cost % AISLE_TOGO_RING;
+    if (cost < self->cost[cell] && self->count[bucket] < self->room) {
+        self->cost[cell] = (uint16_t)cost;
+        self->queue[bucket * self->room + self->count[bucket]++] = cell;
+    }
+}
+
+static void lay_cells(aisle_togo *self) {
+    const aisle_lattice *lattice = &self->grid->lattice;
+    uint32_t stride = (uint32_t)aisle_max(1.0, floor(AISLE_TOGO_SIDE / lattice->res + 0.5));
+    do {
+        self->w = (lattice->w + stride - 1U) / stride;
+        self->h = (lattice->h + stride - 1U) / stride;
+        self->stride = stride++;
+    } while ((uint64_t)self->w * self->h > self->capacity);
+    self->size = (double)self->stride * lattice->res;
+    memset(self->cost, 0xFF, (size_t)self->w * self->h * sizeof(uint16_t));
+}
+
+void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of, aisle_vec2 start, aisle_vec2 goal) {
+    self->grid = grid;
+    lay_cells(self);
+    // A point of the cell may be half a diagonal from its centre, and so may the obstacle's from its own.
+    double least = aisle_max(reach_of / grid->lattice.res - 1.4143, 0.5);
+    self->open_from = (uint32_t)aisle_min(least * least, (double)AISLE_FIELD_SQ_MAX);
+    memset(self->count, 0, sizeof self->count);
+    self->at = self->cells = 0;
+    self->limit = AISLE_TOGO_NONE - DIAGONAL;
+    self->start = cell_of(self, start);
+    reach(self, cell_of(self, goal), 0);
+}
+
+static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
+    const aisle_lattice *lattice = &self->grid->lattice;
+    uint32_t x0 = ix * self->stride, x1 = x0 + self->stride < lattice->w ? x0 + self->stride : lattice->w;
+    uint32_t y0 = iy * self->stride, y1 = y0 + self->stride < lattice->h ? y0 + self->stride : lattice->h;
+    for (uint32_t y = y0; y < y1; y++) {
+        const uint16_t *row = self->grid->field + (size_t)y * lattice->w;
+        for (uint32_t x = x0; x < x1; x++) {
+            if (row[x] >= self->open_from) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void expand(aisle_togo *self, uint32_t cell) {
+    static const int dx[8] = {1, 0, -1, 0, 1, -1, -1, 1};
+    static const int dy[8] = {0, 1, 0, -1, 1, 1, -1, -1};
+    uint32_t ix = cell % self->w, iy = cell / self->w;
+    for (int k = 0; k < 8; k++) {
+        uint32_t nx = ix + (uint32_t)dx[k], ny = iy + (uint32_t)dy[k]; // below 0 wraps to beyond w
+        uint32_t cost = self->at + (k < 4 ? STRAIGHT : DIAGONAL);
+        if (nx < self->w && ny < self->h && cost < self->cost[ny * self->w + nx] && is_open(self, nx, ny)) {
+            reach(self, ny * self->w + nx, cost);
+        }
+    }
+}
+
+// The next bucket that holds something; false: none does, or the limit is reached.
+static bool next_bucket(aisle_togo *self) {
+    for (uint32_t i = 0; i < AISLE_TOGO_RING && self->at < self->limit; i++, self->at++) {
+        if (self->count[self->at % AISLE_TOGO_RING] > 0U) {
+            return true;
+        }
+    }
+    return false;
+}
+
+aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) {
+    uint32_t before = self->cells / CELLS_A_UNIT;
+    bool more = next_bucket(self);
+    while (more && self->cells / CELLS_A_UNIT - before < units) {
+        uint32_t bucket = self->at % AISLE_TOGO_RING;
+        uint32_t cell = self->queue[bucket * self->room + --self->count[bucket]];
+        self->cells++;
+        if (self->cost[cell] == self->at) {
+            expand(self, cell);
+            if (cell == self->start && self->limit == AISLE_TOGO_NONE - DIAGONAL) {
+                double beyond = WORTH_SHARE * (double)self->at + STRAIGHT * WORTH_MORE / self->size;
+                self->limit = (uint32_t)aisle_min(beyond, (double)self->limit);
+            }
+        }
+        more = next_bucket(self);
+    }
+    *spent += self->cells / CELLS_A_UNIT - before;
+    if (more) {
+        return AISLE_BUSY;
+    }
+    return self->cost[self->start] == AISLE_TOGO_NONE ? AISLE_PARTIAL : AISLE_OK;
+}
+
+double aisle_togo_at(const aisle_togo *self, aisle_vec2 p) {
+    uint16_t cost = self->cost[cell_of(self, p)];
+    return cost == AISLE_TOGO_NONE ? (double)INFINITY : (double)cost * self->size / STRAIGHT;
+}

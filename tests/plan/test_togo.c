@@ -1,0 +1,93 @@
+#include "plan/togo.h"
+
+#include "hall.h"
+
+enum { CELLS = 65536 };
+
+static aisle_togo togo;
+
+static void open_hall(void) {
+    aisle_arena arena = hall_arena(HALL_BLOCK);
+    aisle_togo_carve(&togo, &arena, hall_limits.cells);
+    hall_open(&arena, 0.05F);
+}
+
+static aisle_status search(double reach, aisle_vec2 start, aisle_vec2 goal, uint32_t slice, uint32_t *spent) {
+    aisle_status st;
+    *spent = 0;
+    aisle_togo_start(&togo, aisle_layout_grid(&hall_layout), reach, start, goal);
+    while ((st = aisle_togo_step(&togo, slice, spent)) == AISLE_BUSY) {
+    }
+    return st;
+}
+
+void setUp(void) {
+    hall_begin(20.0, 12.0);
+    hall_add(9.5, 0.0, 10.5, 10.0); // a wall, the way about its end at y = 10
+    open_hall();
+}
+void tearDown(void) {}
+
+// Through (10, 10 + reach) about: the exact way about two corners, by hand.
+static double about_the_wall(aisle_vec2 p, aisle_vec2 q) {
+    return hypot(9.5 - p.x, 10.0 - p.y) + 1.0 + hypot(q.x - 10.5, q.y - 10.0);
+}
+
+static void test_it_is_the_way_within_a_tenth_and_two_cells(void) {
+    uint32_t spent;
+    const aisle_vec2 start = {2.0, 2.0}, goal = {18.0, 3.0};
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.5, start, goal, 1000, &spent));
+    for (uint64_t s = 0; s < 300; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(19.0, 9.0));
+        double way = p.x > 11.5 ? aisle_vec2_distance(p, goal) : about_the_wall(p, goal);
+        if (p.x < 8.5 || p.x > 11.5) {
+            double told = aisle_togo_at(&togo, p);
+            TEST_ASSERT_TRUE(told >= way - 0.6 && told <= 1.09 * way + 1.5); // the disc keeps 0.5 m off the corners
+        }
+    }
+    TEST_ASSERT_TRUE(aisle_togo_at(&togo, start) > aisle_togo_at(&togo, aisle_vec2_of(5.0, 8.0)));
+}
+
+static void test_what_the_disc_cannot_reach_is_infinite(void) {
+    uint32_t spent;
+    hall_begin(20.0, 12.0);
+    hall_add(9.5, 0.0, 10.5, 11.4); // leaves 0.6 m
+    open_hall();
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, search(0.5, aisle_vec2_of(2.0, 2.0), aisle_vec2_of(18.0, 3.0), 1000, &spent));
+    TEST_ASSERT_FALSE(aisle_togo_at(&togo, aisle_vec2_of(2.0, 2.0)) < (double)INFINITY);
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.28, aisle_vec2_of(2.0, 2.0), aisle_vec2_of(18.0, 3.0), 1000, &spent));
+}
+
+static void test_slices_change_nothing(void) {
+    static uint16_t whole[CELLS];
+    uint32_t spent, sliced;
+    const aisle_vec2 start = {2.0, 2.0}, goal = {18.0, 3.0};
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.5, start, goal, UINT32_MAX, &spent));
+    uint32_t cells = togo.w * togo.h;
+    TEST_ASSERT_TRUE(cells <= CELLS);
+    memcpy(whole, togo.cost, cells * sizeof whole[0]);
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.5, start, goal, 1, &sliced));
+    TEST_ASSERT_EQUAL_UINT32(spent, sliced);
+    TEST_ASSERT_EQUAL_MEMORY(whole, togo.cost, cells * sizeof whole[0]);
+}
+
+static void test_a_map_of_more_cells_than_it_holds_is_seen_coarser(void) {
+    uint32_t spent;
+    aisle_arena arena = hall_arena(HALL_BLOCK);
+    aisle_togo_carve(&togo, &arena, 4096U); // 512 cells of its own
+    hall_open(&arena, 0.05F);
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.5, aisle_vec2_of(2.0, 2.0), aisle_vec2_of(18.0, 3.0), 100, &spent));
+    TEST_ASSERT_TRUE(togo.w * togo.h <= togo.capacity && togo.size > AISLE_TOGO_SIDE);
+    double way = about_the_wall(aisle_vec2_of(2.0, 2.0), aisle_vec2_of(18.0, 3.0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.15 * way, way, aisle_togo_at(&togo, aisle_vec2_of(2.0, 2.0)));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_it_is_the_way_within_a_tenth_and_two_cells);
+    RUN_TEST(test_what_the_disc_cannot_reach_is_infinite);
+    RUN_TEST(test_slices_change_nothing);
+    RUN_TEST(test_a_map_of_more_cells_than_it_holds_is_seen_coarser);
+    return UNITY_END();
+}
