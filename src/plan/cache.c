@@ -13,6 +13,7 @@
 #define BLOCKS_MIN ((AISLE_CACHE_PATH_MAX + KEY_MAX) / AISLE_CACHE_BLOCK + 1U) // so that every path fits
 #define TOUCH_SPARE 1e-3 // m, nearer than this to what is told is as near
 #define DETOUR_SPARE 1e-3
+#define REACH_SPARE 5e-3          // m, above all that a planner keeps beyond margin and creep clearance
 #define GRAVITY_LEAST 9.8         // m/s2, not above the one that energy goes by
 #define VALUE_NO_LENGTH 1048576.0 // from here on the safest path's worth counts risk before length
 #define LOOKS_A_UNIT 16U
@@ -333,7 +334,7 @@ void aisle_cache_put(aisle_cache *self, const aisle_cache_question *question, co
                                  .path_size = size,
                                  .basis = answer->basis,
                                  .theta = answer->path->waypoints[0].theta,
-                                 .reach = aisle_max(vehicle->creep_clearance, vehicle->margin),
+                                 .reach = aisle_max(vehicle->creep_clearance, vehicle->margin) + REACH_SPARE,
                                  .radius = vehicle->outer_radius,
                                  .excess = excess_of(question, answer)};
     note_order(entry, question, answer);

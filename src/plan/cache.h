@@ -1,10 +1,10 @@
 // cache.h - answers remembered: proved paths by what was asked, kept where a changed layout does not touch them. Level 4.
 //
 // Key: start, goals in their order with tolerances and dwell, ordering, options, the vehicle's content, the layout's map
-// and content (aisle_layout_content()); no ids or times of messages, so a query's answer serves a goal list and the
-// other way round. All but the layout's is compared byte by byte behind the hash. Nothing here is trusted: what find()
-// hands out is given a new head and goes to the verifier like any other path (verify.h; the motion's stamp of its last
-// proof goes along), and bytes that are not those put in are dropped and counted as spoiled.
+// and content (aisle_layout_content()); no ids or times of messages, so a query's answer serves a goal list, too. All but
+// the layout's is compared byte by byte behind the hash. Nothing here is trusted: what find() hands out is given a new
+// head and goes to the verifier like any other path (verify.h; with the basis of its last proof), and bytes that are not
+// those put in are dropped and counted as spoiled.
 //
 // A goal list may be given up while it is planned, at a moment that a replay of the same inputs does not know. So what is
 // remembered must not hang on it: lists find what queries have left (readonly) and leave nothing themselves.
@@ -15,7 +15,7 @@
 //    and the clearance told for the piece, the largest. So what is told of clearance, risk, speeds and energy stays
 //    true, and the path still is what the planner would make of the same way;
 // 2. a removed polygon's box opens no better way. A way through it has to come as near as above, so with b that box
-//    grown by outer radius and the larger of creep clearance and margin, it is no shorter than
+//    grown by outer radius and the larger of creep clearance and margin (and 5 mm), it is no shorter than
 //        E(b) = min over p in b of |from - p| + |p - to|,    from, to the leg's ends,
 //    and the path stays if on each leg E(b) >= L + D, L the leg's length and D what the whole path is worth beyond its
 //    length by the objective's measure, as the length of a way without any hindrance:
@@ -25,9 +25,9 @@
 //        LEAST_ENERGY  (energy - idle_power * dwell) / (m g c / efficiency + idle_power / v_max) - length
 //    For ANY_ORDER the way to each goal is measured against the whole path. PAPER's own answers never stay.
 // So it is promised of a path kept that it is proved on the new layout before it leaves, that its length_bound is still
-// one, and that no way over ground that was freed since it was planned is better by more than 1 mm (or its worth). It is
-// as good, then, as when it was planned; a fresh search may still come out otherwise, better too, on ground that was
-// free all the time, where the planner is not exact.
+// one, and that no way over ground that was freed since it was planned is better by more than what 1 mm is worth. It is as
+// good, then, as when it was planned; a fresh search may still come out otherwise, better too, on ground that was free
+// all the time, where the planner is not exact.
 // What is not taken over (dropped) stays with the layout it is of, and serves when that comes back (a door that opens
 // and shuts), until it is the least recently used. Zones of every kind are treated alike. After a change of everything
 // nothing is taken over unless the new layout says the same.

@@ -110,6 +110,36 @@ def test_empty_list_revokes_the_path(ready):
     assert len([p for _, p in daemon.paths if p.status == path_t.OK]) == count
 
 
+def test_a_vehicle_that_changes_under_way_has_its_path_withdrawn_and_made_anew(ready):
+    daemon, driver, world = ready
+    driver.spin(0.3)
+    daemon.bus.publish("GOALS", goal_list(1, (19.0, 19.0)))
+    assert driver.spin(30.0, lambda: has_path(daemon))
+    driver.spin(1.0)
+    old = daemon.paths[-1][1]
+    same = vehicle.make({"radius": 0.3, "margin": -1})
+    same.vehicle_revision = old.vehicle_revision + 1  # the same body: its path goes on
+    begin = len(daemon.paths)
+    daemon.bus.publish("VEHICLE", same)
+    assert driver.spin(5.0, lambda: daemon.paths[-1][1].vehicle_revision == same.vehicle_revision)
+    assert all(p.status == path_t.OK for _, p in daemon.paths[begin:])
+    assert [w.encode() for w in daemon.paths[-1][1].waypoints] == [w.encode() for w in old.waypoints]
+    wide = vehicle.make({"radius": 0.45, "margin": -1})
+    wide.vehicle_revision = same.vehicle_revision + 1
+    begin = len(daemon.paths)
+    daemon.bus.publish("VEHICLE", wide)
+    assert driver.spin(30.0, lambda: any(p.vehicle_revision == wide.vehicle_revision and p.status == path_t.OK
+                                         for _, p in daemon.paths[begin:]))
+    later = [p for _, p in daemon.paths[begin:]]
+    withdrawn = next(i for i, p in enumerate(later) if p.status == path_t.NONE)
+    assert (later[withdrawn].cause, later[withdrawn].cause_id) == (status_t.CONFLICT, wide.vehicle_revision)
+    assert all(p.vehicle_revision == wide.vehicle_revision for p in later[withdrawn:])
+    asked = query.make_query(query.Leg("1", driver.pose, [(19.0, 19.0)]), 1, 1, options(), False)
+    asked.goals[0].id = 11
+    report = check_path(later[-1], Obstacles(world), vehicle.body(wide), asked)
+    assert report.ok, report.faults
+
+
 def test_goal_list_out_of_reach_is_answered_with_the_reason(ready):
     daemon, driver, _ = ready
     driver.spin(0.3)
