@@ -16,7 +16,6 @@ enum { PHASE_NEARER, PHASE_ABOVE, PHASE_BELOW, PHASE_AHEAD, PHASE_DOWN, PHASE_UP
 // ---- memory
 
 void aisle_grid_window_carve(aisle_grid_window *self, aisle_arena *arena) {
-    AISLE_ASSERT(MARGIN >= AISLE_WINDOW_PIECE);
     *self = (aisle_grid_window){.phase = PHASE_DONE};
     self->nearest = aisle_arena_take(arena, AISLE_WINDOW_PIECE, sizeof *self->nearest);
     self->above = aisle_arena_take(arena, WIDTH, sizeof *self->above);

@@ -20,13 +20,13 @@
 // 32nd row is kept.
 // Where cells became occupied only, the field is lowered to the distances from these: one sweep, and nothing beside
 // matters.
-// Memory: 63 KiB. Time: O(cells of the window and of the columns beside that matter) for a piece.
+// Memory: 79 KiB. Time: O(cells of the window and of the columns beside that matter) for a piece.
 #ifndef AISLE_WORLD_GRID_WINDOW_H
 #define AISLE_WORLD_GRID_WINDOW_H
 
 #include "world/grid.h"
 
-#define AISLE_WINDOW_PIECE 256U // cells along a side of a piece, at most
+#define AISLE_WINDOW_PIECE 512U // cells along a side of a piece, at most
 #define AISLE_WINDOW_SIDE (AISLE_WINDOW_PIECE + 2U * 255U)
 #define AISLE_WINDOW_FREED 3U // in the field of a cell that became free; no squared distance between cells
 
@@ -40,7 +40,7 @@ typedef struct aisle_grid_window {
     int32_t rows0, rows1;         // rows [rows0, rows1) hold all that matters
     aisle_window_column *nearest; // [AISLE_WINDOW_PIECE]
     uint16_t *above, *below;      // [AISLE_WINDOW_SIDE + 512] column distances, from the first column beside on
-    uint16_t *saved;              // [25 blocks of rows][512] of columns beside, to what is below the block
+    uint16_t *saved;              // [33 blocks of rows][512] of columns beside, to what is below the block
     uint16_t *ahead;              // [32 rows of a block][512] the same in each row of the block in hand
     int32_t next_row;
     uint8_t phase;

@@ -108,6 +108,7 @@ typedef struct aisle_layout_staging { // what is known of the staged store
     aisle_id_map ids;                                                                // of the staged zones
     aisle_id_map message;                                                            // of the polygons of one message
     uint16_t *order;                                                                 // [polygons] scratch
+    uint32_t named; // zones of the active store that a patch names, listed there
 } aisle_layout_staging;
 
 typedef struct aisle_layout {

@@ -55,17 +55,20 @@ static uint32_t edit_of(const aisle_id_map *edits, int32_t id) {
     return edit == NULL ? 0U : *edit;
 }
 
-// Marks the edits that meet a zone of the active layout and counts what neither leaves nor is put anew.
+// Lists the zones of the active layout that are named, in staging.order, marks their edits, and counts the others.
 static totals find_edits(aisle_layout *self) {
     const aisle_layout_store *active = aisle_layout_active(self);
-    totals kept = {0, 0};
+    aisle_layout_staging *staging = &self->staging;
+    totals kept = {active->zone_count, active->vertex_count};
+    staging->named = 0;
     for (uint32_t i = 0; i < active->zone_count; i++) {
-        uint32_t *edit = aisle_id_map_find(&self->staging.message, active->zones[i].id);
-        if (edit == NULL) {
-            kept.zones++;
-            kept.vertices += active->zones[i].n;
-        } else {
+        uint32_t *edit = aisle_id_map_find(&staging->message, active->zones[i].id);
+        if (edit != NULL) {
             *edit |= EDIT_FOUND;
+            staging->order[staging->named] = (uint16_t)i;
+            staging->named++;
+            kept.zones--;
+            kept.vertices -= active->zones[i].n;
         }
     }
     return kept;
@@ -123,28 +126,37 @@ static bool lift_zone(aisle_layout *self, uint32_t i, const aisle_polygon_msg *p
     return false;
 }
 
+static void edit_zone(aisle_layout *self, const aisle_layout_patch_msg *msg, uint32_t i) {
+    uint32_t *edit = aisle_id_map_find(&self->staging.message, aisle_layout_active(self)->zones[i].id);
+    AISLE_ASSERT(edit != NULL);
+    const uint32_t number = *edit & EDIT_PUT;
+    const aisle_polygon_msg *put_again = number == 0 ? NULL : &msg->polygons[number - 1U];
+    const bool is_same = lift_zone(self, i, put_again);
+    *edit |= is_same ? EDIT_SAME : 0U;
+    if ((*edit & EDIT_REMOVED) == 0) { // changed in place
+        put_polygon(self, put_again, is_same);
+    } else if (is_same) {
+        self->diff.is_reordered = true;
+    }
+}
+
+// The active layout's zones with those named changed or left out, then what is new.
 static void stage_edited(aisle_layout *self, const aisle_layout_patch_msg *msg) {
     const aisle_layout_store *active = aisle_layout_active(self);
-    aisle_layout_store *store = aisle_layout_staged(self);
-    const aisle_id_map *edits = &self->staging.message;
-    for (uint32_t i = 0; i < active->zone_count; i++) {
-        uint32_t *edit = aisle_id_map_find(edits, active->zones[i].id);
-        if (edit == NULL) {
-            aisle_layout_store_add_zone(store, active, &active->zones[i]);
-            continue;
+    const aisle_layout_staging *staging = &self->staging;
+    uint32_t next = 0;
+    for (uint32_t k = 0; k <= staging->named; k++) {
+        const uint32_t stop = k < staging->named ? staging->order[k] : active->zone_count;
+        if (next < stop) {
+            aisle_layout_store_add_zones(aisle_layout_staged(self), active, next, stop);
         }
-        const uint32_t number = *edit & EDIT_PUT;
-        const aisle_polygon_msg *put_again = number == 0 ? NULL : &msg->polygons[number - 1U];
-        const bool is_same = lift_zone(self, i, put_again);
-        *edit |= is_same ? EDIT_SAME : 0U;
-        if ((*edit & EDIT_REMOVED) == 0) { // changed in place
-            put_polygon(self, put_again, is_same);
-        } else if (is_same) {
-            self->diff.is_reordered = true;
+        if (k < staging->named) {
+            edit_zone(self, msg, stop);
         }
+        next = stop + 1U;
     }
     for (int16_t i = 0; i < msg->num_polygons; i++) {
-        const uint32_t edit = edit_of(edits, msg->polygons[i].id);
+        const uint32_t edit = edit_of(&staging->message, msg->polygons[i].id);
         if ((edit & EDIT_FOUND) == 0 || (edit & EDIT_REMOVED) != 0) {
             put_polygon(self, &msg->polygons[i], (edit & EDIT_SAME) != 0);
         }

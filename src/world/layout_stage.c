@@ -154,7 +154,7 @@ void aisle_layout_stage_begin(aisle_layout *self, const aisle_layout_header *hea
     staging->is_patch = false;
     staging->parts = 0;
     staging->tiles = 0;
-    memset(staging->tile, 0, AISLE_LAYOUT_TILES_MAX * sizeof *staging->tile);
+    memset(staging->tile, 0, header->tiles * sizeof *staging->tile);
     aisle_id_map_clear(&staging->ids);
 }
 

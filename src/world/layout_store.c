@@ -75,13 +75,38 @@ void aisle_layout_store_add(aisle_layout_store *self, const aisle_polygon_msg *p
     self->zones_content += aisle_layout_store_content(self, zone);
 }
 
-void aisle_layout_store_add_zone(aisle_layout_store *self, const aisle_layout_store *from, const aisle_zone *zone) {
-    aisle_zone *to = new_zone(self, zone->n);
-    const uint32_t first = to->first;
-    *to = *zone;
-    to->first = first;
-    self->speed_limits += zone->kind == AISLE_POLYGON_SPEED_LIMIT ? 1U : 0U;
-    memcpy(&self->vertices[first], &from->vertices[zone->first], zone->n * sizeof *self->vertices);
+// Zones that came in order have their vertices in one row; others are copied one by one.
+static bool are_vertices_in_row(const aisle_zone *zones, uint32_t count) {
+    bool is_row = true;
+    for (uint32_t i = 1; i < count; i++) {
+        is_row = is_row && zones[i].first == zones[i - 1U].first + zones[i - 1U].n;
+    }
+    return is_row;
+}
+
+void aisle_layout_store_add_zones(aisle_layout_store *self, const aisle_layout_store *from, uint32_t first,
+                                  uint32_t end) {
+    AISLE_ASSERT(first < end && end <= from->zone_count && end - first <= self->zone_capacity - self->zone_count);
+    const aisle_zone *old = &from->zones[first];
+    aisle_zone *zones = &self->zones[self->zone_count];
+    const uint32_t count = end - first;
+    const uint32_t begin = self->vertex_count;
+    const bool is_row = are_vertices_in_row(old, count);
+    memcpy(zones, old, count * sizeof *zones);
+    for (uint32_t i = 0; i < count; i++) {
+        zones[i].first = self->vertex_count;
+        self->vertex_count += zones[i].n;
+        self->speed_limits += zones[i].kind == AISLE_POLYGON_SPEED_LIMIT ? 1U : 0U;
+        AISLE_ASSERT(self->vertex_count <= self->vertex_capacity);
+        if (!is_row) {
+            memcpy(&self->vertices[zones[i].first], &from->vertices[old[i].first], zones[i].n * sizeof *self->vertices);
+        }
+    }
+    if (is_row) {
+        memcpy(&self->vertices[begin], &from->vertices[old->first],
+               (self->vertex_count - begin) * sizeof *self->vertices);
+    }
+    self->zone_count += count;
 }
 
 uint64_t aisle_layout_store_content(const aisle_layout_store *self, const aisle_zone *zone) {

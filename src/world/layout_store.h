@@ -53,8 +53,9 @@ bool aisle_polygon_is_valid(const aisle_polygon_msg *polygon);
 
 // Appends a valid polygon; there must be room. O(vertices).
 void aisle_layout_store_add(aisle_layout_store *self, const aisle_polygon_msg *polygon);
-// Appends a zone of another store; zones_content is left to the caller.
-void aisle_layout_store_add_zone(aisle_layout_store *self, const aisle_layout_store *from, const aisle_zone *zone);
+// Appends zones [first, end) of another store; zones_content is left to the caller.
+void aisle_layout_store_add_zones(aisle_layout_store *self, const aisle_layout_store *from, uint32_t first,
+                                  uint32_t end);
 // Its part of zones_content. O(vertices).
 uint64_t aisle_layout_store_content(const aisle_layout_store *self, const aisle_zone *zone);
 // The zone as a message again, and whether it says the same as a valid polygon, bit for bit.

@@ -117,9 +117,9 @@ static void test_pieces_of_the_greatest_size_do(void) {
     aisle_rng rng = aisle_rng_seed(420);
     begin(&rng, 1000, 1000, 2);
     for (uint32_t i = 0; i < 12U; i++) {
-        const int32_t x = (int32_t)aisle_rng_below(&rng, 745);
-        const int32_t y = (int32_t)aisle_rng_below(&rng, 745);
-        const aisle_cells c = {x, y, x + 256, y + 256};
+        const int32_t x = (int32_t)aisle_rng_below(&rng, 489);
+        const int32_t y = (int32_t)aisle_rng_below(&rng, 489);
+        const aisle_cells c = {x, y, x + 512, y + 512};
         change(&rng, c, i % 2U);
         settle(c, UINT32_MAX);
         expect_fresh();

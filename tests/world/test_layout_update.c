@@ -234,7 +234,7 @@ static void test_walls_longer_than_a_piece_come_move_and_go(void) {
         const double angle = gen_in(&rng, 0, 6.28);
         const double c = cos(angle);
         const double s = sin(angle);
-        const double length = i % 4U == 3U ? 9.0 : gen_in(&rng, 7, 14); // half, m
+        const double length = i % 4U == 3U ? 11.0 : gen_in(&rng, 7, 20); // half, m
         const double width = i % 4U == 3U ? 8.0 : 0.15;
         const aisle_vec2 v[4] = {{30 - c * length + s * width, 25 - s * length - c * width},
                                  {30 + c * length + s * width, 25 + s * length - c * width},
@@ -255,7 +255,7 @@ static void test_walls_longer_than_a_piece_come_move_and_go(void) {
     take_away(120);
     enforce(UINT32_MAX);
     expect_as_fresh();
-    TEST_ASSERT_TRUE(updates >= 8U && wholes >= 3U); // both ways are tried
+    TEST_ASSERT_TRUE(updates >= 7U && wholes >= 3U); // both ways are tried
 }
 
 static void test_any_slicing_of_a_patch_gives_the_same(void) {

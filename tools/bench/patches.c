@@ -4,7 +4,7 @@
 // comes at a random place, moves by half its side and goes, as three patches; the medians of all places. take_us:
 // aisle_layout_take_patch(); index_us: both indices; field_us: the grid. window_cells: of all windows of a patch, with
 // the columns beside; floor_us: reading and writing once as many cells (a square) at a random place of the field, the
-// traffic no update can do without. load_us: what the same hall takes loaded whole, without the parts' messages.
+// traffic no update can do without. load_us: the same hall loaded whole, the parts' messages not counted, the best of three.
 #include "base/crc32.h"
 #include "base/rng.h"
 #include "wire/codec.h"
@@ -70,7 +70,6 @@ static uint32_t make_hall(const setting *s, aisle_rng *rng) {
     uint32_t crc = 0;
     for (uint32_t i = 0; i < PARTS; i++) {
         parts[i].map_id = 1;
-        parts[i].map_revision = aisle_layout_map_revision(&layout) + 1;
         parts[i].part = (int16_t)i;
         parts[i].num_parts = PARTS;
         parts[i].total_polygons = (int32_t)count;
@@ -95,9 +94,10 @@ static uint32_t make_hall(const setting *s, aisle_rng *rng) {
     return count;
 }
 
-static double load(const setting *s) {
+static double load_once(void) {
     aisle_refusal why;
     for (uint32_t i = 0; i < PARTS; i++) {
+        parts[i].map_revision = aisle_layout_map_revision(&layout) + 1;
         if (aisle_layout_take_part(&layout, &parts[i], &why) == AISLE_ERR_DATA) {
             (void)fprintf(stderr, "refused: %d %d\n", (int)why.cause, (int)why.id);
             exit(1);
@@ -107,10 +107,19 @@ static double load(const setting *s) {
     aisle_layout_commit(&layout);
     while (aisle_layout_build(&layout, UINT32_MAX) == AISLE_BUSY) {
     }
+    return seconds() - from;
+}
+
+static double load(const setting *s) { // the best of three
+    double best = load_once();
+    for (uint32_t i = 0; i < 2U; i++) {
+        const double again = load_once();
+        best = again < best ? again : best;
+    }
     if (layout.grid.lattice.w != s->side) {
         abort();
     }
-    return seconds() - from;
+    return best;
 }
 
 // ---- a patch
