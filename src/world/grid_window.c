@@ -40,9 +40,13 @@ static bool is_within(int32_t sq, uint16_t q) {
     return more <= 0 || (more <= 2 * FAR && more * more <= 4 * (int32_t)q);
 }
 
+// Most likely right across from what changed: looked at first.
 static bool is_row_within(const aisle_grid *grid, aisle_cells changed, int32_t y, int32_t x0, int32_t x1) {
     const int32_t dy = off(y, changed.y0, changed.y1);
     const uint16_t *row = cell_at(grid, 0, y);
+    if (is_within(dy * dy, row[(changed.x0 + changed.x1) / 2])) {
+        return true;
+    }
     for (int32_t x = x0; x < x1; x++) {
         const int32_t dx = off(x, changed.x0, changed.x1);
         if (is_within(dx * dx + dy * dy, row[x])) {
@@ -54,6 +58,9 @@ static bool is_row_within(const aisle_grid *grid, aisle_cells changed, int32_t y
 
 static bool is_column_within(const aisle_grid *grid, aisle_cells changed, int32_t x, int32_t y0, int32_t y1) {
     const int32_t dx = off(x, changed.x0, changed.x1);
+    if (is_within(dx * dx, *cell_at(grid, x, (changed.y0 + changed.y1) / 2))) {
+        return true;
+    }
     for (int32_t y = y0; y < y1; y++) {
         const int32_t dy = off(y, changed.y0, changed.y1);
         if (is_within(dx * dx + dy * dy, *cell_at(grid, x, y))) {

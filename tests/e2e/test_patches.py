@@ -2,6 +2,7 @@
 layout whole, and a patch that does not fit leaves all as it was."""
 
 import copy
+import math
 
 import pytest
 from aisle import layout_patch_t, layout_t, path_t, status_t
@@ -102,6 +103,14 @@ def test_patches_that_do_not_fit_are_refused_and_change_nothing(daemon, factory,
         daemon.bus.publish("LAYOUT_PATCH", patch)
         assert daemon.wait(lambda i=i: daemon.status.num_rejected == i + 1)
         assert daemon.wait(lambda cause=cause: daemon.status.cause == cause)
+    whole = make_patch(BASE, [some.ident], [moved(some, 0.1, 0.0)])
+    not_a_number = copy.copy(some)
+    not_a_number.vertices = some.vertices * (1.0, math.nan)
+    broken = [whole.encode()[:n] for n in (9, 40, len(whole.encode()) - 1)]
+    broken.append(make_patch(BASE, [], [not_a_number]).encode())
+    for i, data in enumerate(broken):
+        daemon.bus.lcm.publish(f"{daemon.prefix}_LAYOUT_PATCH", data)
+        assert daemon.wait(lambda i=i: daemon.status.num_rejected == len(bad) + i + 1)
     assert (daemon.fresh_status().map_revision, daemon.counter(LAYOUTS)) == (BASE, 1)
     assert ask(daemon, factory, tmp_path / "after.log") == before
     daemon.bus.publish("LAYOUT_PATCH", make_patch(BASE, [some.ident]))

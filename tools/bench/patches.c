@@ -43,9 +43,9 @@ void aisle_assert_failed(const char *file, int line, const char *condition) {
     abort();
 }
 
-static double seconds(void) {
+static double seconds(void) { // of the processor: other programs matter less
     struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 

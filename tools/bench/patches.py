@@ -72,7 +72,7 @@ def by_box(rows: list[dict], hall: str) -> list[dict]:
 
 def by_map(rows: list[dict], hall: str) -> list[dict]:
     found = {(r["map_cells"], r["edit"]): r for r in rows if r["hall"] == hall and r["box"] == BOX}
-    return list(found.values())
+    return sorted(found.values(), key=lambda r: r["map_cells"])
 
 
 def print_table(title: str, rows: list[dict], over: str) -> None:
