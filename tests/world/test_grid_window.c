@@ -162,6 +162,27 @@ static void test_rows_of_work_are_told_before(void) {
     }
 }
 
+// The cells nearest to (0, 0) end to the right in a tip so thin that column 11 has none of them, yet (12, 5) is one: it
+// is 13 from (0, 0) and no nearer to the others. A window grown only while its frame changes would miss it.
+static void test_cells_cut_off_from_what_changed_are_found(void) {
+    static const int32_t others[][2] = {{1, -2}, {-1, 4}, {-2, -2}, {-2, -1}, {-2, 0}, {-2, 1}, {-2, 2}};
+    for (uint32_t turn = 0; turn < 8U; turn++) {
+        for (uint32_t how = 0; how < 2U; how++) { // it leaves, or it comes
+            memset(occupied, 0, sizeof occupied);
+            for (uint32_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+                const int32_t x = turn % 2U == 0U ? others[i][0] : -others[i][0];
+                const int32_t y = turn / 2U % 2U == 0U ? others[i][1] : -others[i][1];
+                occupied[(30 + (turn < 4U ? y : x)) * 60 + 30 + (turn < 4U ? x : y)] = true;
+            }
+            occupied[30 * 60 + 30] = how == 0U;
+            build(&grid, 60, 60);
+            set_cell(30 * 60 + 30, how == 1U);
+            settle((aisle_cells){30, 30, 31, 31}, UINT32_MAX);
+            expect_fresh();
+        }
+    }
+}
+
 // Among obstacles 20 cells apart nothing 30 cells off can change, whatever the lattice's size.
 static void test_the_window_is_as_large_as_the_change_and_its_surroundings(void) {
     memset(occupied, 0, sizeof occupied);
@@ -190,6 +211,7 @@ int main(void) {
     RUN_TEST(test_pieces_of_the_greatest_size_do);
     RUN_TEST(test_any_slicing_gives_the_same_field);
     RUN_TEST(test_rows_of_work_are_told_before);
+    RUN_TEST(test_cells_cut_off_from_what_changed_are_found);
     RUN_TEST(test_the_window_is_as_large_as_the_change_and_its_surroundings);
     const int failures = UNITY_END();
     free(memory);
