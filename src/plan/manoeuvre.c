@@ -7,15 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-#define CUSP 1.0         // m, cost of a change between forwards and backwards
-#define TURN_START 0.3   // m, of a turn on the spot
-#define TURN_RATE 0.3    // m a rad, and of each rad of it
-#define STEP_OPEN 2.0    // m, longest step
-#define OPEN_IN_CELL 2U  // nodes waiting in one cell, more only if they are cheaper
-#define LINK_FAR 12.0    // m
-#define LINKS_EACH 3U    // ways of steer.h that are pushed for a target
-#define LINKS_OFTEN 400U // expansions that all make links; later ones one in LINKS_ONE_IN
-#define LINKS_ONE_IN 3U
+#define CUSP 1.0           // m, cost of a change between forwards and backwards
+#define TURN_START 0.3     // m, of a turn on the spot
+#define TURN_RATE 0.3      // m a rad, and of each rad of it
+#define STEP_OPEN 2.0      // m, longest step
+#define OPEN_IN_CELL 2U    // nodes waiting in one cell, more only if they are cheaper
+#define LINK_FAR 12.0      // m
+#define LINKS_EACH 3U      // ways of steer.h that are pushed for a target
+#define LINKS_PATIENCE 60U // links that fail, for each of which one more node goes without
+#define LINKS_PAUSE_MAX 10U
 #define KEY_SCALE 4096.0 // of f, to a heap's key
 #define LEVELS 4
 #define CELLS_A_NODE 64U // of the planning grid, by which the nodes are counted
@@ -334,7 +334,9 @@ static void expand(aisle_manoeuvre *self, uint32_t n) {
         push_arcs(self, n, self->step, sector / self->step);
         push_turns(self, n);
     }
-    if (self->side > 0.0 && (self->expanded < LINKS_OFTEN || self->expanded % LINKS_ONE_IN == 0U)) {
+    if (self->side > 0.0 && self->expanded >= self->link_next) {
+        uint32_t pause = self->link_fails / LINKS_PATIENCE;
+        self->link_next = self->expanded + (pause < LINKS_PAUSE_MAX ? pause : LINKS_PAUSE_MAX);
         push_targets(self, n);
         push_tree(self, n);
     }
@@ -361,6 +363,7 @@ static void push_roots(aisle_manoeuvre *self, aisle_pose2 at, bool any_heading) 
 static void begin_open(aisle_manoeuvre *self, double side) {
     self->side = side;
     self->expanded = 0;
+    self->link_next = self->link_fails = 0;
     self->slots = 0;
     self->spare_count = 0;
     memset(self->slot, 0, self->slot_capacity * sizeof(aisle_manoeuvre_slot));
@@ -490,6 +493,9 @@ static bool closes(aisle_manoeuvre *self, uint32_t n) {
     }
     uint32_t count = moves_to(self, n, moves);
     *closed = count == 0U || aisle_manoeuvre_moves_free(self, self->node[node->parent].pose, moves, count);
+    if (node->target < AISLE_MANOEUVRE_TARGETS) {
+        self->link_fails = *closed ? 0U : self->link_fails + 1U;
+    }
     return *closed;
 }
 

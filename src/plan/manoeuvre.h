@@ -100,6 +100,8 @@ typedef struct aisle_manoeuvre {
     uint32_t headings;     // in a full turn
     double need;           // m, that the body keeps
     uint32_t expanded;     // nodes, in this attempt
+    uint32_t link_next;    // links are made again when so many are expanded
+    uint32_t link_fails;   // links that came to nothing, one after the other
     aisle_move *move;      // [AISLE_MANOEUVRE_CHAIN] the way found
     aisle_pose2 *junction; // [AISLE_MANOEUVRE_CHAIN + 1] before each move and at the end
     uint32_t moves;

@@ -8,10 +8,7 @@
 
 // All lengths in radii. Left turns first, forwards first: the other words are these ones mirrored in time, in space or
 // in both. Names as in the paper: section 8, equations (8.1) to (8.11).
-typedef struct target {
-    double x, y, phi; // of the end, seen from the beginning
-    double sine, cosine;
-} target;
+typedef struct aisle_reeds_shepp_target target;
 
 typedef struct lengths { // of a word: t, u, v
     double t, u, v;
@@ -185,8 +182,8 @@ static bool solve(formula which, const target *q, lengths *out) {
     }
 }
 
-// The end seen from the beginning, in radii; from the end, everything driven the other way, for words read backwards.
-static target target_of(aisle_pose2 from, aisle_pose2 to, double radius, bool backwards) {
+aisle_reeds_shepp aisle_reeds_shepp_between(aisle_pose2 from, aisle_pose2 to, double radius) {
+    AISLE_ASSERT(radius > 0.0);
     target q = {.phi = aisle_angle_difference(from.theta, to.theta)};
     double sine, cosine;
     aisle_sincos(from.theta, &sine, &cosine);
@@ -195,12 +192,10 @@ static target target_of(aisle_pose2 from, aisle_pose2 to, double radius, bool ba
     q.x = cosine * dx + sine * dy;
     q.y = cosine * dy - sine * dx;
     aisle_sincos(q.phi, &q.sine, &q.cosine);
-    if (backwards) {
-        double x = q.x;
-        q.x = x * q.cosine + q.y * q.sine;
-        q.y = x * q.sine - q.y * q.cosine;
-    }
-    return q;
+    aisle_reeds_shepp self = {q, q, radius};
+    self.back.x = q.x * q.cosine + q.y * q.sine; // from the end, everything driven the other way
+    self.back.y = q.x * q.sine - q.y * q.cosine;
+    return self;
 }
 
 static target mirrored(target q, bool in_time, bool in_space) {
@@ -256,24 +251,27 @@ static bool leads_there(const aisle_reeds_shepp_word *word, const target *q) {
            fabs(aisle_angle_difference(p.theta, q->phi)) <= AISLE_REEDS_SHEPP_OFF * travel;
 }
 
-bool aisle_reeds_shepp(aisle_pose2 from, aisle_pose2 to, double radius, uint32_t n, aisle_reeds_shepp_word *word) {
-    AISLE_ASSERT(n < AISLE_REEDS_SHEPP_WORDS && radius > 0.0);
+bool aisle_reeds_shepp_word_of(const aisle_reeds_shepp *self, uint32_t n, double longest,
+                               aisle_reeds_shepp_word *word) {
+    AISLE_ASSERT(n < AISLE_REEDS_SHEPP_WORDS);
     const family *f = &families[n / MIRRORS];
     bool in_time = n % 2U != 0U;
     bool in_space = n / 2U % 2U != 0U;
-    const target plain = target_of(from, to, radius, f->backwards);
-    const target q = mirrored(plain, in_time, in_space);
+    const target q = mirrored(f->backwards ? self->back : self->forth, in_time, in_space);
     lengths of;
     if (!solve(f->solve, &q, &of)) {
         return false;
     }
     write_word(f, &of, in_time, in_space, word);
-    const target asked = f->backwards ? target_of(from, to, radius, false) : plain;
-    if (!leads_there(word, &asked)) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < word->count; i++) {
+        sum += fabs(word->move[i].length);
+    }
+    if (sum * self->radius > longest || !leads_there(word, &self->forth)) {
         return false;
     }
     for (uint32_t i = 0; i < word->count; i++) {
-        word->move[i].length *= radius;
+        word->move[i].length *= self->radius;
     }
     return true;
 }

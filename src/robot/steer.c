@@ -121,9 +121,12 @@ static void offer_turns(list *self, aisle_pose2 from, aisle_pose2 to) {
 }
 
 static void offer_words(list *self, aisle_pose2 from, aisle_pose2 to) {
+    const aisle_reeds_shepp between = aisle_reeds_shepp_between(from, to, self->rule->radius_min);
     aisle_reeds_shepp_word word;
     for (uint32_t n = 0; n < AISLE_REEDS_SHEPP_WORDS; n++) {
-        if (aisle_reeds_shepp(from, to, self->rule->radius_min, n, &word)) {
+        bool full = self->count == AISLE_STEER_WAYS; // no longer one can be cheaper than the dearest
+        double longest = full ? self->ways[AISLE_STEER_WAYS - 1U].cost : (double)INFINITY;
+        if (aisle_reeds_shepp_word_of(&between, n, longest, &word)) {
             offer(self, word.move, word.count);
         }
     }

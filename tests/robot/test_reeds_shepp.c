@@ -56,9 +56,10 @@ static void judge(const aisle_reeds_shepp_word *word, aisle_pose2 from, place to
 static double shortest(aisle_pose2 from, place to) {
     aisle_pose2 end = {(double)to.x, (double)to.y, (double)remainderl(to.theta, 2.0L * acosl(-1.0L))};
     double best = (double)INFINITY;
+    const aisle_reeds_shepp between = aisle_reeds_shepp_between(from, end, RADIUS);
     for (uint32_t n = 0; n < AISLE_REEDS_SHEPP_WORDS; n++) {
         aisle_reeds_shepp_word word;
-        if (aisle_reeds_shepp(from, end, RADIUS, n, &word)) {
+        if (aisle_reeds_shepp_word_of(&between, n, (double)INFINITY, &word)) {
             judge(&word, from, to);
             best = fmin(best, length_of(&word));
         }
