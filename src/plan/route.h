@@ -13,8 +13,8 @@
 //     LEAST_ENERGY  energy                         the same ones
 // A way: per leg TANGENT (tangent.h; the first way's search also gives the bound), where the body cannot follow what that
 // finds MANOEUVRE (manoeuvre.h, first way alone: it serves every objective), led by the tightest way found and, if that
-// fails, by the widest one; where that is not the way's kind or finds none SEED (seed.h) and TAUT; BUILD, VERIFY; per leg SWARM where it may gain something, BUILD, VERIFY. A later way
-// that fails is given up; an answer is told early (AISLE_PARTIAL, once) when what follows takes long.
+// fails, by the widest one; where that is not the way's kind or finds none SEED (seed.h) and TAUT; BUILD, VERIFY; per leg
+// SWARM where it may gain something, BUILD, VERIFY. A later way that fails is given up; an answer is told early (AISLE_PARTIAL, once) when what follows takes long.
 // Planner by name: ASTAR leaves the swarm out; PSO is the objective's GRID way alone and takes the swarm's path wherever
 // it is proved; PSO with objective PAPER is the paper's own swarm (PAPER) alone, its path or a refusal (BUDGET: it found
 // none, which proves nothing).
