@@ -180,7 +180,10 @@ static aisle_status disproved(aisle_route *self) {
                 verify->fault == AISLE_VERIFY_HEADING || verify->fault == AISLE_VERIFY_START ||
                 verify->fault == AISLE_VERIFY_GOAL;
     int16_t cause = body ? AISLE_STATUS_KINEMATIC : AISLE_STATUS_VERIFY_FAILED;
-    return fall_back(self, cause, body ? verify->fault_id : (int32_t)verify->fault, verify->fault_at);
+    const aisle_waypoint_msg *at = &self->path->waypoints[verify->fault_waypoint];
+    bool placed = verify->fault == AISLE_VERIFY_COLLISION || verify->fault == AISLE_VERIFY_CREEP;
+    return fall_back(self, cause, body ? verify->fault_id : (int32_t)verify->fault,
+                     placed ? verify->fault_at : aisle_vec2_of(at->x, at->y));
 }
 
 // The swarm's path is proved; legs that came out worse than their seeds go back to them, once.

@@ -100,7 +100,7 @@ static aisle_status end_why(aisle_route *self) {
     int16_t cause =
         aisle_vehicle_is_disc(self->vehicle) || !why->connected ? AISLE_STATUS_BUDGET : AISLE_STATUS_KINEMATIC;
     const aisle_goal_msg *goal = &self->request.goals[self->leg];
-    if (!why->connected) { // by what can be seen on the grid, which is no proof
+    if (!why->connected || why->gap.sides == 0U) { // by what can be seen on the grid, which is no proof
         (void)aisle_route_refuse_at(self, cause, goal->id, 0.0, why->goal);
     } else {
         (void)aisle_route_refuse_at(self, cause, why->gap.id[0], why->gap.width, why->gap.place);

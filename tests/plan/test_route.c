@@ -307,6 +307,40 @@ static void test_curves_a_vehicle_cannot_drive_are_kinematic(void) {
     refused_with(AISLE_STATUS_KINEMATIC);
 }
 
+static void test_a_turn_there_is_no_room_for_is_kinematic_at_its_goal(void) {
+    hall_vehicle.curvature_max = 0.5;
+    hall_begin(6.0, 4.0);
+    hall_add(1.0, 1.0, 5.0, 3.0);
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO, 0.5, 2.0, 0.5, 2.0);
+    request.start = (aisle_goal_msg){.x = 0.5, .y = 2.0, .theta = 1.5707963};
+    request.goals[0] = (aisle_goal_msg){.id = 11, .x = 0.5, .y = 2.0, .theta = -1.5707963};
+    (void)plan(1000);
+    refused_with(AISLE_STATUS_KINEMATIC);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5, route.told[0].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0, route.told[0].y);
+    request.goals[0].theta = 1.5707963F; // nothing to do
+    (void)plan(1000);
+    (void)proof();
+    TEST_ASSERT_TRUE(answer.length <= 0.0F);
+}
+
+static void test_legs_go_on_with_the_heading_they_end_with(void) {
+    hall_rectangle(1.6, 0.5, 0.05F);
+    hall_begin(12.0, 8.0);
+    hall_add(3.0, 0.0, 9.0, 3.6); // an aisle of 0.8 m; the diagonal is 1.68 m
+    hall_add(3.0, 4.4, 9.0, 8.0);
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO, 1.5, 4.0, 6.0, 4.0); // into the aisle, and back out of it: backwards
+    request.goals[1] = (aisle_goal_msg){.id = 12, .x = 1.5, .y = 4.0, .tolerance_theta = 4.0F};
+    request.num_goals = 2;
+    request.options.objective = AISLE_OPTIONS_SHORTEST;
+    (void)plan(1000);
+    (void)proof();
+    TEST_ASSERT_TRUE(answer.length <= 9.01F);
+    TEST_ASSERT_TRUE((answer.waypoints[answer.num_waypoints - 1].flags & AISLE_WAYPOINT_REVERSE) != 0);
+}
+
 static void test_a_curve_wide_enough_is_driven_without_turns_on_the_spot(void) {
     hall_vehicle.curvature_max = 0.8;
     hall_begin(20.0, 16.0);
@@ -426,6 +460,8 @@ int main(void) {
     RUN_TEST(test_a_long_body_takes_an_aisle_narrower_than_its_diagonal_along_it);
     RUN_TEST(test_a_bend_no_body_can_take_is_kinematic_with_its_place);
     RUN_TEST(test_curves_a_vehicle_cannot_drive_are_kinematic);
+    RUN_TEST(test_a_turn_there_is_no_room_for_is_kinematic_at_its_goal);
+    RUN_TEST(test_legs_go_on_with_the_heading_they_end_with);
     RUN_TEST(test_a_curve_wide_enough_is_driven_without_turns_on_the_spot);
     RUN_TEST(test_the_second_leg_is_named_where_it_fails);
     RUN_TEST(test_a_full_open_list_is_a_limit);
