@@ -6,7 +6,8 @@
 #include <string.h>
 
 #define COST_MAX 1e12
-#define NEAR 12U // places that a kick's cuts lie within, at most
+#define NEAR 30U    // places that a kick's cuts lie within, at most
+#define DEARER 0.03 // than the best, as a part of it, that is gone on from at first
 
 // ---- start
 
@@ -144,27 +145,32 @@ static aisle_status end(aisle_order *self) {
 
 // ---- exact
 
-static bool holds(uint32_t set, uint32_t place) {
-    return (set >> place & 1U) != 0U;
+// The places of a set, rising.
+static uint32_t list_members(uint32_t set, uint8_t *members) {
+    uint32_t count = 0;
+    for (uint32_t place = 0; set >> place != 0U; place++) {
+        members[count] = (uint8_t)place;
+        count += set >> place & 1U;
+    }
+    return count;
 }
 
 // The cheapest way over all of a set that ends at `last`, by the place before: the lowest one of the least cost.
-static double best_before(aisle_order *self, uint32_t set, uint32_t last, uint32_t *from) {
+static double best_before(aisle_order *self, uint32_t set, const uint8_t *members, uint32_t count, uint32_t last,
+                          uint32_t *from) {
     const uint32_t n = self->cfg.n;
-    const uint32_t rest = set & ~(1U << last);
+    const double *rest = &self->table[(set & ~(1U << last)) * n];
+    double least = count == 1U ? self->cfg.cost[n * n + last] : (double)INFINITY;
     *from = n;
-    if (rest == 0U) {
-        return self->cfg.cost[n * n + last];
-    }
-    double least = (double)INFINITY;
-    for (uint32_t i = 0; i < n; i++) {
-        if (holds(rest, i)) {
-            double sum = self->table[rest * n + i] + self->cfg.cost[i * n + last];
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t i = members[k];
+        if (i != last) {
+            double sum = rest[i] + self->cfg.cost[i * n + last];
             *from = sum < least ? i : *from;
             least = sum < least ? sum : least;
         }
     }
-    self->evals += n;
+    self->evals += count;
     return least;
 }
 
@@ -183,10 +189,12 @@ static void read_table(aisle_order *self) {
         return;
     }
     uint8_t order[AISLE_ORDER_MAX];
+    uint8_t members[AISLE_ORDER_EXACT_MAX];
     for (uint32_t i = n; i-- > 0U;) {
         AISLE_ASSERT(last < n);
         uint32_t from;
-        (void)best_before(self, set, last, &from);
+        uint32_t count = list_members(set, members);
+        (void)best_before(self, set, members, count, last, &from);
         order[i] = (uint8_t)last;
         set &= ~(1U << last);
         last = from;
@@ -196,11 +204,11 @@ static void read_table(aisle_order *self) {
 
 static aisle_status step_table(aisle_order *self) {
     const uint32_t n = self->cfg.n;
-    for (uint32_t j = 0; j < n; j++) {
-        if (holds(self->set, j)) {
-            uint32_t from;
-            self->table[self->set * n + j] = best_before(self, self->set, j, &from);
-        }
+    uint8_t members[AISLE_ORDER_EXACT_MAX];
+    const uint32_t count = list_members(self->set, members);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t from;
+        self->table[self->set * n + members[k]] = best_before(self, self->set, members, count, members[k], &from);
     }
     self->set++;
     if (self->set < 1U << n) {
@@ -356,6 +364,7 @@ static move best_move(aisle_order *self, uint32_t i) {
 }
 
 static void make(aisle_order *self, const move *m) {
+    const double promised = self->now_value - m->gain;
     mark(self, before(self, m->i));
     mark(self, self->now[m->i]);
     mark(self, self->now[m->j - 1U]);
@@ -371,6 +380,7 @@ static void make(aisle_order *self, const move *m) {
         exchange(self, m->i, m->j, m->k);
     }
     sum_up(self);
+    AISLE_ASSERT(fabs(self->now_value - promised) <= 100.0 * self->least_gain);
 }
 
 // ---- local search
@@ -394,15 +404,14 @@ static void kick(aisle_order *self) {
     self->kicks++;
 }
 
-// At a local optimum: kept if it is no dearer than the best.
+// At a local optimum: gone on from, if it is not much dearer than the best.
 static aisle_status settle(aisle_order *self) {
     const double gain = self->best_value - self->now_value;
-    if (gain >= -self->least_gain) { // sideways is welcome, but for rounding's sake only a true gain becomes the answer
-        if (gain > self->least_gain) {
-            self->best_value = self->now_value;
-            adopt(self, self->now);
-        }
-    } else {
+    const double done = (double)self->kicks / ((double)self->cfg.kicks + 1.0);
+    if (gain > self->least_gain) {
+        self->best_value = self->now_value;
+        adopt(self, self->now);
+    } else if (gain < -DEARER * (1.0 - done) * self->best_value - self->least_gain) {
         memcpy(self->now, self->order, self->count);
         sum_up(self);
     }

@@ -224,7 +224,7 @@ static void test_up_to_eight_places_no_permutation_is_cheaper(void) {
 static void test_nine_to_twelve_places_are_as_cheap_as_by_a_table_in_long_double(void) {
     for (uint32_t n = 9; n <= 12; n++) {
         for (int what = 0; what < KINDS; what++) {
-            for (uint64_t seed = 0; seed < 4; seed++) {
+            for (uint64_t seed = 0; seed < 2; seed++) {
                 make(n, (kind)what, seed);
                 TEST_ASSERT_EQUAL(AISLE_OK, run(UINT32_MAX));
                 TEST_ASSERT_TRUE(fabsl(least_by_table() - sum_of(order.order)) < 1e-9L);
@@ -274,7 +274,7 @@ static void test_thirteen_and_fourteen_places_come_out_exact_on_nearly_all_seeds
     double worst = 1.0;
     for (uint32_t n = 13; n <= 14; n++) {
         for (int what = 0; what < KINDS; what++) {
-            for (uint64_t seed = 0; seed < (n < 14 ? 4U : 2U); seed++) {
+            for (uint64_t seed = 0; seed < (n < 14 ? 2U : 1U); seed++) {
                 make(n, (kind)what, seed);
                 TEST_ASSERT_EQUAL(AISLE_OK, run(UINT32_MAX));
                 long double ratio = sum_of(order.order) / fmaxl(least_by_table(), 1e-9L);
@@ -285,7 +285,7 @@ static void test_thirteen_and_fourteen_places_come_out_exact_on_nearly_all_seeds
         }
     }
     printf("13 and 14 places: %d of %d exact, worst %.4f\n", hits, runs, worst);
-    TEST_ASSERT_TRUE(hits >= runs - 2);
+    TEST_ASSERT_TRUE(hits >= runs - 1);
     TEST_ASSERT_TRUE(worst < 1.04);
 }
 
@@ -302,8 +302,8 @@ static void test_up_to_64_places_come_within_a_few_hundredths_of_a_lower_bound(v
         worst = fmax(worst, ratio);
     }
     printf("20 to 64 places: %.4f of the bound in the mean, worst %.4f\n", sum / 16.0, worst);
-    TEST_ASSERT_TRUE(worst < 1.04);
-    TEST_ASSERT_TRUE(sum / 16.0 < 1.012);
+    TEST_ASSERT_TRUE(worst < 1.03);
+    TEST_ASSERT_TRUE(sum / 16.0 < 1.0085);
 }
 
 static void test_an_order_without_a_way_somewhere_is_taken_only_if_there_is_no_other(void) {
@@ -315,6 +315,56 @@ static void test_an_order_without_a_way_somewhere_is_taken_only_if_there_is_no_o
     }
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run(UINT32_MAX));
     TEST_ASSERT_TRUE(isinf(sum_of(order.order)));
+}
+
+static void turn(uint8_t *from, uint8_t *to) {
+    for (to--; from < to; from++, to--) {
+        uint8_t swap = *from;
+        *from = *to;
+        *to = swap;
+    }
+}
+
+// Of all orders one move away: the cheapest. A move: [i, j) turned, or [i, j) and [j, k) exchanged, either of these turned
+// round, if it is no longer than AISLE_ORDER_SEGMENT.
+static long double cheapest_neighbour(void) {
+    long double least = (long double)INFINITY;
+    const uint32_t n = cfg.n;
+    for (uint32_t i = 0; i < n; i++) {
+        for (uint32_t j = i + 1U; j <= n; j++) {
+            uint8_t turned[MOST];
+            memcpy(turned, order.order, n);
+            turn(turned + i, turned + j);
+            least = fminl(least, sum_of(turned));
+            for (uint32_t k = j + 1U; k <= n; k++) {
+                uint8_t moved[MOST];
+                uint32_t middle = i + k - j;
+                memcpy(moved, order.order, n);
+                memcpy(moved + i, order.order + j, k - j);
+                memcpy(moved + middle, order.order + i, j - i);
+                least = fminl(least, sum_of(moved));
+                if (j - i <= AISLE_ORDER_SEGMENT) {
+                    turn(moved + middle, moved + k);
+                    least = fminl(least, sum_of(moved));
+                    turn(moved + middle, moved + k);
+                }
+                if (k - j <= AISLE_ORDER_SEGMENT) {
+                    turn(moved + i, moved + middle);
+                    least = fminl(least, sum_of(moved));
+                }
+            }
+        }
+    }
+    return least;
+}
+
+static void test_no_move_gains_on_the_order_found_if_costs_are_even(void) {
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        make(seed % 2U == 0U ? 20 : 33, seed % 3U == 0U ? CLUSTERS : PLANE, 300U + seed);
+        cfg.kicks = seed < 6U ? 0U : 60U;
+        TEST_ASSERT_EQUAL(AISLE_OK, run(UINT32_MAX));
+        TEST_ASSERT_TRUE(cheapest_neighbour() >= sum_of(order.order) - 1e-8L);
+    }
 }
 
 static void test_a_good_guess_is_never_made_worse(void) {
@@ -334,15 +384,17 @@ static void test_a_good_guess_is_never_made_worse(void) {
     TEST_ASSERT_TRUE(sum_of(order.order) <= before + 1e-9L);
 }
 
-static void test_more_kicks_are_never_dearer(void) {
+static void test_kicks_never_make_it_dearer(void) {
     make(64, UNEVEN, 4);
-    long double last = INFINITY;
-    for (cfg.kicks = 0; cfg.kicks < 600; cfg.kicks += 150) {
+    cfg.kicks = 0;
+    (void)run(UINT32_MAX);
+    long double without = sum_of(order.order);
+    for (cfg.kicks = 50; cfg.kicks < 600; cfg.kicks += 150) {
         (void)run(UINT32_MAX);
         TEST_ASSERT_EQUAL_UINT32(cfg.kicks, order.kicks);
-        TEST_ASSERT_TRUE(sum_of(order.order) <= last + 1e-9L);
-        last = sum_of(order.order);
+        TEST_ASSERT_TRUE(sum_of(order.order) <= without + 1e-9L);
     }
+    TEST_ASSERT_TRUE(sum_of(order.order) < 0.99L * without);
 }
 
 // ---- slices, rules
@@ -426,8 +478,9 @@ int main(void) {
     RUN_TEST(test_thirteen_and_fourteen_places_come_out_exact_on_nearly_all_seeds);
     RUN_TEST(test_up_to_64_places_come_within_a_few_hundredths_of_a_lower_bound);
     RUN_TEST(test_an_order_without_a_way_somewhere_is_taken_only_if_there_is_no_other);
+    RUN_TEST(test_no_move_gains_on_the_order_found_if_costs_are_even);
     RUN_TEST(test_a_good_guess_is_never_made_worse);
-    RUN_TEST(test_more_kicks_are_never_dearer);
+    RUN_TEST(test_kicks_never_make_it_dearer);
     RUN_TEST(test_any_slicing_gives_the_same_order_and_counts);
     RUN_TEST(test_the_best_so_far_is_there_at_any_time);
     RUN_TEST(test_start_refuses_what_breaks_a_rule_and_leaves_self_alone);

@@ -183,6 +183,21 @@ def test_acceleration_lateral_and_creep_limits():
     assert "lateral" in "; ".join(check_path(path, hall(), DISC).faults)
 
 
+def test_goals_in_any_order_are_looked_for_in_the_paths():
+    from aisle_tools import query
+
+    leg = query.Leg("1", (0.0, 0.0), [(4.0, 0.0), (1.0, 0.0)])  # ids 1 and 2
+    path = good_path()
+    for at, ident in ((1, 2), (3, 1)):
+        path.waypoints[at].flags, path.waypoints[at].goal_id = waypoint_t.GOAL, ident
+    asked = query.make_query(leg, 1, 1, path_options(), False, any_order=True)
+    assert check_path(path, hall(), DISC, asked).ok
+    path.waypoints[1].flags = 0  # goal 2 is passed, but not said to be
+    assert "goal 2" in "; ".join(check_path(path, hall(), DISC, asked).faults)
+    asked.ordering = 0
+    assert "goal 2" in "; ".join(check_path(good_path(), hall(), DISC, asked).faults)
+
+
 def test_goals_are_looked_for_in_order():
     from aisle_tools import query
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
-from aisle import path_t, query_t, waypoint_t
+from aisle import goal_list_t, path_t, query_t, waypoint_t
 
 from aisle_tools import geometry
 from aisle_tools.vehicle import Body
@@ -257,11 +257,19 @@ def _check_ends(path: path_t, query: query_t, report: Report) -> None:
     if math.hypot(first.x - query.start.x, first.y - query.start.y) > 1e-5:
         report.faults.append(f"starts at ({first.x:.4f}, {first.y:.4f}), not where asked")
     at = 0
-    for goal in query.goals:
+    for goal in _goals_in_order(path, query):
         at = _find_goal(path, goal, at)
         if at < 0:
             report.faults.append(f"goal {goal.id} at ({goal.x:.3f}, {goal.y:.3f}) is not reached in order")
             return
+
+
+def _goals_in_order(path: path_t, query: query_t) -> list:
+    """As asked, or of any order as the path says by its ids; one that it leaves out comes last."""
+    if query.ordering != goal_list_t.ANY_ORDER:
+        return list(query.goals)
+    ids = [w.goal_id for w in path.waypoints if w.flags & waypoint_t.GOAL]
+    return sorted(query.goals, key=lambda goal: ids.index(goal.id) if goal.id in ids else len(ids))
 
 
 def _find_goal(path: path_t, goal: object, begin: int) -> int:

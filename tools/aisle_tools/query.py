@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from aisle import goal_t, options_t, path_t, query_t, vehicle_t
+from aisle import goal_list_t, goal_t, options_t, path_t, query_t, vehicle_t
 
 from aisle_tools import maps, names, vehicle
 from aisle_tools.bus import Bus, LogWriter, StatusWatch, now_us
@@ -89,7 +89,7 @@ def make_options(args: argparse.Namespace) -> options_t:
     return options
 
 
-def make_query(leg: Leg, ident: int, map_id: int, options: options_t, any_heading: bool) -> query_t:
+def make_query(leg: Leg, ident: int, map_id: int, options: options_t, any_heading: bool, any_order: bool = False) -> query_t:
     query = query_t()
     query.utime, query.query_id, query.map_id, query.options = now_us(), ident, map_id, options
     # Without a heading the start looks at the first goal and may be turned at will.
@@ -99,6 +99,7 @@ def make_query(leg: Leg, ident: int, map_id: int, options: options_t, any_headin
     query.start.theta = start[2] if len(start) == 3 else facing
     query.goals = [make_goal(i + 1, g, any_heading) for i, g in enumerate(leg.goals)]
     query.num_goals = len(query.goals)
+    query.ordering = goal_list_t.ANY_ORDER if any_order else goal_list_t.ORDERED
     return query
 
 
@@ -109,6 +110,7 @@ def add_leg_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--goals", type=Path, metavar="FILE", help="CSV of start_x,start_y,goal_x,goal_y: a query a row")
     group.add_argument("--scenario", type=Path, metavar="FILE", help="a query for each leg of this scenario (and its robot)")
     group.add_argument("--any-heading", action="store_true", help="at every goal (the default where TH is not given)")
+    group.add_argument("--any-order", action="store_true", help="let the daemon choose the order of several goals")
     group.add_argument("--map-id", type=int, metavar="N", help="default: the map held (1 with --log)")
 
 
@@ -174,7 +176,7 @@ def write_log(args: argparse.Namespace, legs: list[Leg]) -> int:
     log = LogWriter(args.log, args.prefix)
     options = make_options(args)
     for i, leg in enumerate(legs):
-        log.publish("QUERY", make_query(leg, i + 1, args.map_id or 1, options, args.any_heading))
+        log.publish("QUERY", make_query(leg, i + 1, args.map_id or 1, options, args.any_heading, args.any_order))
     log.close()
     print(f"{len(legs)} queries into {args.log}")
     return 0
@@ -191,7 +193,7 @@ def ask_all(args: argparse.Namespace, legs: list[Leg], print_row: bool) -> list[
     pairs = []
     base = (time.time_ns() // 1_000_000) % 1_000_000_000 + 1
     for i, leg in enumerate(legs):
-        query = make_query(leg, base + i, map_id, options, args.any_heading)
+        query = make_query(leg, base + i, map_id, options, args.any_heading, args.any_order)
         reply, seconds = asker.ask(query)
         pairs.append((query, reply))
         if table is not None:

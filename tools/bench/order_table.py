@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""What it costs to order goals, and how far the order is from the best one, on goals drawn in a scenario's hall.
+
+build/venv/bin/python tools/bench/order_table.py [--scenario FILE] [--goals N ...] [--seeds K] [--optimum SECONDS]
+
+Each row sums up `seeds` sets of goals. pairs: searches of the way between two goals, of all there are. ms, units: of the
+order alone. over: its length over the optimum's by CP-SAT of OR-tools (`pip install ortools` into the venv; not needed
+otherwise) on the exact lengths of all pairs, and how many of the sets CP-SAT proved; unproved ones count with the best it
+found. beelines: what the best order by beelines costs by true ways, over the optimum's. Exits 1 if up to 12 goals an order
+is not the best.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+from aisle_tools import hall
+from aisle_tools.scenario import read_scenario
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+COUNTS = (2, 4, 6, 8, 10, 12, 13, 16, 24, 32, 48, 64)
+EXACT_MAX = 12
+SCALE = 1e4  # integer costs of 0.1 mm
+CLOSE = 1e-4  # relative; what rounding may hide
+
+
+def main() -> int:
+    args = parse()
+    scene = hall.text(read_scenario(args.scenario, args.margin), args.margin, 0)
+    print(f"{args.scenario.stem}: {args.seeds} sets of goals each")
+    print(f"{'goals':>5} {'pairs':>12} {'rounds':>6} {'units':>8} {'ms':>7} {'max ms':>7} {'over':>8} {'worst':>8} {'proved':>6} {'beelines':>9}")
+    rows, missed = [], 0
+    for count in args.goals:
+        runs = [run(args, scene, count, seed) for seed in range(1, args.seeds + 1)]
+        rows.append(row(count, runs))
+        missed += sum(count <= EXACT_MAX and r.get("ratio", 1.0) > 1.0 + CLOSE for r in runs)
+    if args.json is not None:
+        args.json.write_text(json.dumps(rows, indent=1) + "\n")
+    return 1 if missed else 0
+
+
+def parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--scenario", type=Path, default=ROOT / "tests" / "data" / "scenarios" / "factory_big.json")
+    parser.add_argument("--goals", type=int, nargs="*", default=COUNTS, metavar="N")
+    parser.add_argument("--seeds", type=int, default=5, metavar="K", help="sets of goals for each number of them")
+    parser.add_argument("--margin", type=float, default=-1.0, help="m; negative = none (default)")
+    parser.add_argument("--optimum", type=float, default=20.0, metavar="S", help="seconds for each optimum; 0: none")
+    parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bench-order")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows as JSON too")
+    return parser.parse_args()
+
+
+def run(args: argparse.Namespace, scene: str, count: int, seed: int) -> dict:
+    words = [str(args.program), str(count), str(seed)]
+    done = subprocess.run(words, input=scene, text=True, capture_output=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{count} goals, seed {seed}: {done.stderr}")
+    out = json.loads(done.stdout)
+    cost, beeline = ([out[k][i * count : (i + 1) * count] for i in range(count + 1)] for k in ("cost", "beeline"))
+    told = length(cost, out["order"])
+    if abs(told - out["length"]) > 1e-6:
+        sys.exit(f"{count} goals, seed {seed}: told {out['length']}, is {told}")
+    if args.optimum > 0.0:
+        best, proved = optimum(cost, out["order"], args.optimum)
+        blind, _ = optimum(beeline, out["order"], args.optimum)
+        least = min(length(cost, best), told)
+        out |= {"ratio": told / least, "proved": proved, "blind": length(cost, blind) / least}
+    return out
+
+
+def length(cost: list[list[float]], order: list[int]) -> float:
+    return sum(cost[a][b] for a, b in zip([len(order), *order], order))
+
+
+def optimum(cost: list[list[float]], hint: list[int], seconds: float) -> tuple[list[int], bool]:
+    """The shortest open order from the start: a circuit with free arcs back to it."""
+    from ortools.sat.python import cp_model
+
+    n = len(hint)
+    model = cp_model.CpModel()
+    arcs, terms, next_of = [], [], dict(zip([n, *hint], hint))
+    for i in range(n + 1):
+        for j in range(n + 1):
+            if i != j:
+                var = model.new_bool_var("")
+                arcs.append((i, j, var))
+                if j < n:
+                    terms.append(round(cost[i][j] * SCALE) * var)
+                model.add_hint(var, next_of.get(i, n) == j)
+    model.add_circuit(arcs)
+    model.minimize(sum(terms))
+    solver = cp_model.CpSolver()
+    solver.parameters.max_time_in_seconds = seconds
+    solver.parameters.num_workers = 2
+    status = solver.solve(model)
+    follow = {i: j for i, j, var in arcs if solver.value(var)}
+    order, at = [], n
+    while (at := follow[at]) != n:
+        order.append(at)
+    return order, status == cp_model.OPTIMAL
+
+
+def row(count: int, runs: list[dict]) -> dict:
+    pairs = count * (count + 1) // 2
+    known = [r for r in runs if "ratio" in r]
+    out = {
+        "goals": count,
+        "pairs": pairs,
+        "searches": statistics.mean(r["searches"] for r in runs),
+        "rounds": statistics.mean(r["rounds"] for r in runs),
+        "units": statistics.mean(r["units"] for r in runs),
+        "ms": statistics.median(r["ms"] for r in runs),
+        "ms_max": max(r["ms"] for r in runs),
+        "over": statistics.mean(r["ratio"] for r in known) if known else None,
+        "worst": max(r["ratio"] for r in known) if known else None,
+        "proved": sum(r["proved"] for r in known),
+        "beelines": statistics.mean(r["blind"] for r in known) if known else None,
+    }
+    ratios = " ".join(f"{out[k]:>8.5f}" if known else f"{'-':>8}" for k in ("over", "worst"))
+    blind = f"{out['beelines']:>9.4f}" if known else f"{'-':>9}"
+    print(
+        f"{count:>5} {out['searches']:>6.1f}/{pairs:<5} {out['rounds']:>6.1f} {out['units']:>8.0f} {out['ms']:>7.2f} "
+        f"{out['ms_max']:>7.2f} {ratios} {out['proved']:>6} {blind}",
+        flush=True,
+    )
+    return out
+
+
+if __name__ == "__main__":
+    sys.exit(main())
