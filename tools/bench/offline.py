@@ -69,7 +69,7 @@ def answers(args: argparse.Namespace, world: World, msg: vehicle_t, legs: list[q
     return made
 
 
-def write_log(args: argparse.Namespace, path: Path, world: World, msg: vehicle_t, legs: list[query.Leg]) -> None:
+def write_log(args: argparse.Namespace, path: Path, world: World, msg: vehicle_t, legs: list[query.Leg], any_order: bool = False) -> None:
     log = LogWriter(path, PREFIX)
     for name, part in layouts.make_messages(world, 1, 1, 0):
         log.publish(name, part)
@@ -77,7 +77,7 @@ def write_log(args: argparse.Namespace, path: Path, world: World, msg: vehicle_t
     log.publish("VEHICLE", msg)
     options = query.make_options(args)
     for i, leg in enumerate(legs):
-        log.publish("QUERY", query.make_query(leg, i + 1, 1, options, False))
+        log.publish("QUERY", query.make_query(leg, i + 1, 1, options, False, any_order))
     log.close()
 
 

@@ -118,6 +118,10 @@ int main(int argc, char **argv) {
             (void)printf("%s%.9f", i + j > 0U ? ", " : "", aisle_vec2_distance(place[i], place[j]));
         }
     }
+    (void)printf("], \"places\": [");
+    for (uint32_t i = 0; i <= n; i++) { // the start last
+        (void)printf("%s[%.9f, %.9f]", i > 0U ? ", " : "", place[i].x, place[i].y);
+    }
     (void)printf("]}\n");
     return 0;
 }

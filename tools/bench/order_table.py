@@ -5,9 +5,10 @@ build/venv/bin/python tools/bench/order_table.py [--scenario FILE] [--goals N ..
 
 Each row sums up `seeds` sets of goals. pairs: searches of the way between two goals, of all there are. ms, units: of the
 order alone. over: its length over the optimum's by CP-SAT of OR-tools (`pip install ortools` into the venv; not needed
-otherwise) on the exact lengths of all pairs, and how many of the sets CP-SAT proved; unproved ones count with the best it
-found. beelines: what the best order by beelines costs by true ways, over the optimum's. Exits 1 if up to 12 goals an order
-is not the best.
+otherwise), which begins with the order, on the exact lengths of all pairs, and how many of the sets CP-SAT proved;
+unproved ones count with the best it found. bound: the worst over CP-SAT's lower bound. beelines: what the best order by beelines costs by true ways, over the optimum's. --whole: whole queries in any order by an
+objective, as `aisle-replay --bench` runs them: paths of the sets, ms and work units in the median. Exits 1 if up to 12 goals
+an order is not the best.
 """
 
 from __future__ import annotations
@@ -17,9 +18,11 @@ import json
 import statistics
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
-from aisle_tools import hall
+import offline
+from aisle_tools import hall, names, query, vehicle
 from aisle_tools.scenario import read_scenario
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -33,11 +36,13 @@ def main() -> int:
     args = parse()
     scene = hall.text(read_scenario(args.scenario, args.margin), args.margin, 0)
     print(f"{args.scenario.stem}: {args.seeds} sets of goals each")
-    print(f"{'goals':>5} {'pairs':>12} {'rounds':>6} {'units':>8} {'ms':>7} {'max ms':>7} {'over':>8} {'worst':>8} {'proved':>6} {'beelines':>9}")
+    print(f"{'goals':>5} {'pairs':>12} {'rounds':>6} {'units':>8} {'ms':>7} {'max ms':>7} {'over':>8} {'worst':>8} {'proved':>6} {'bound':>7} {'beelines':>9}")
     rows, missed = [], 0
     for count in args.goals:
         runs = [run(args, scene, count, seed) for seed in range(1, args.seeds + 1)]
         rows.append(row(count, runs))
+        if args.whole:
+            print(f"{'':>5} {whole(args, runs)}", flush=True)
         missed += sum(count <= EXACT_MAX and r.get("ratio", 1.0) > 1.0 + CLOSE for r in runs)
     if args.json is not None:
         args.json.write_text(json.dumps(rows, indent=1) + "\n")
@@ -52,6 +57,8 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--margin", type=float, default=-1.0, help="m; negative = none (default)")
     parser.add_argument("--optimum", type=float, default=20.0, metavar="S", help="seconds for each optimum; 0: none")
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bench-order")
+    parser.add_argument("--whole", choices=[o.lower() for o in names.OBJECTIVES[:4]], metavar="OBJECTIVE")
+    parser.add_argument("--replay", type=Path, default=ROOT / "build" / "release" / "aisle-replay", metavar="PROGRAM")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows as JSON too")
     return parser.parse_args()
 
@@ -67,18 +74,32 @@ def run(args: argparse.Namespace, scene: str, count: int, seed: int) -> dict:
     if abs(told - out["length"]) > 1e-6:
         sys.exit(f"{count} goals, seed {seed}: told {out['length']}, is {told}")
     if args.optimum > 0.0:
-        best, proved = optimum(cost, out["order"], args.optimum)
-        blind, _ = optimum(beeline, out["order"], args.optimum)
+        best, proved, bound = optimum(cost, out["order"], args.optimum)
+        blind, *_ = optimum(beeline, out["order"], args.optimum)
         least = min(length(cost, best), told)
-        out |= {"ratio": told / least, "proved": proved, "blind": length(cost, blind) / least}
+        out |= {"ratio": told / least, "proved": proved, "bound": told / bound, "blind": length(cost, blind) / least}
     return out
+
+
+def whole(args: argparse.Namespace, runs: list[dict]) -> str:
+    scenario = read_scenario(args.scenario, args.margin)
+    shape = {"footprint": scenario.footprint} if scenario.footprint else {"radius": scenario.radius}
+    legs = [query.Leg(str(i), r["places"][-1], r["places"][:-1]) for i, r in enumerate(runs)]
+    options = argparse.Namespace(planner="auto", objective=args.whole, interpolation="spline", seed=0, work_units=0)
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "order.log"
+        offline.write_log(options, log, scenario.world, vehicle.make({**shape, "margin": args.margin}), legs, any_order=True)
+        timed = offline.timed(args.replay, log, 3)
+    paths = sum(t["status"] == "OK" for t in timed)
+    ms, units = (statistics.median(t[k] for t in timed) for k in ("ms_median", "work_units"))
+    return f"whole queries, {args.whole}: {paths} of {len(timed)} paths, {ms:.1f} ms, {units:.0f} units"
 
 
 def length(cost: list[list[float]], order: list[int]) -> float:
     return sum(cost[a][b] for a, b in zip([len(order), *order], order))
 
 
-def optimum(cost: list[list[float]], hint: list[int], seconds: float) -> tuple[list[int], bool]:
+def optimum(cost: list[list[float]], hint: list[int], seconds: float) -> tuple[list[int], bool, float]:
     """The shortest open order from the start: a circuit with free arcs back to it."""
     from ortools.sat.python import cp_model
 
@@ -103,7 +124,7 @@ def optimum(cost: list[list[float]], hint: list[int], seconds: float) -> tuple[l
     order, at = [], n
     while (at := follow[at]) != n:
         order.append(at)
-    return order, status == cp_model.OPTIMAL
+    return order, status == cp_model.OPTIMAL, max(solver.best_objective_bound / SCALE, 1e-9)
 
 
 def row(count: int, runs: list[dict]) -> dict:
@@ -120,10 +141,11 @@ def row(count: int, runs: list[dict]) -> dict:
         "over": statistics.mean(r["ratio"] for r in known) if known else None,
         "worst": max(r["ratio"] for r in known) if known else None,
         "proved": sum(r["proved"] for r in known),
+        "bound": max(r["bound"] for r in known) if known else None,
         "beelines": statistics.mean(r["blind"] for r in known) if known else None,
     }
     ratios = " ".join(f"{out[k]:>8.5f}" if known else f"{'-':>8}" for k in ("over", "worst"))
-    blind = f"{out['beelines']:>9.4f}" if known else f"{'-':>9}"
+    blind = f"{out['bound']:>7.4f} {out['beelines']:>9.4f}" if known else f"{'-':>7} {'-':>9}"
     print(
         f"{count:>5} {out['searches']:>6.1f}/{pairs:<5} {out['rounds']:>6.1f} {out['units']:>8.0f} {out['ms']:>7.2f} "
         f"{out['ms_max']:>7.2f} {ratios} {out['proved']:>6} {blind}",
