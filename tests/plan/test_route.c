@@ -325,6 +325,30 @@ static void test_a_turn_there_is_no_room_for_is_kinematic_at_its_goal(void) {
     TEST_ASSERT_TRUE(answer.length <= 0.0F);
 }
 
+static void test_headings_that_leave_no_room_to_turn_are_reached_by_turning_elsewhere(void) {
+    hall_rectangle(1.6, 0.5, 0.05F);
+    hall_begin(12.0, 8.0);
+    hall_add(3.0, 0.0, 9.0, 3.6); // an aisle of 0.8 m; the diagonal is 1.68 m
+    hall_add(3.0, 4.4, 9.0, 8.0);
+    open_hall();
+    for (int k = 0; k < 4; k++) { // the place in the aisle is the goal or the start, faced either way
+        double theta = k % 2 == 0 ? 0.0 : 3.14159265;
+        ask(AISLE_OPTIONS_AUTO, 1.5, 4.0, 6.0, 4.0);
+        request.options.objective = AISLE_OPTIONS_SHORTEST;
+        request.start.tolerance_theta = request.goals[0].tolerance_theta = 0.0F;
+        request.goals[0].theta = theta;
+        if (k >= 2) {
+            aisle_goal_msg swap = request.start;
+            request.start = request.goals[0];
+            request.goals[0] = swap;
+        }
+        (void)plan(1000);
+        (void)proof();
+        TEST_ASSERT_TRUE(answer.length <= (k % 2 == 0 ? 9.0F : 12.0F));
+        TEST_ASSERT_EQUAL_INT64(0, route.verify_failed); // it saw so itself
+    }
+}
+
 static void test_legs_go_on_with_the_heading_they_end_with(void) {
     hall_rectangle(1.6, 0.5, 0.05F);
     hall_begin(12.0, 8.0);
@@ -461,6 +485,7 @@ int main(void) {
     RUN_TEST(test_a_bend_no_body_can_take_is_kinematic_with_its_place);
     RUN_TEST(test_curves_a_vehicle_cannot_drive_are_kinematic);
     RUN_TEST(test_a_turn_there_is_no_room_for_is_kinematic_at_its_goal);
+    RUN_TEST(test_headings_that_leave_no_room_to_turn_are_reached_by_turning_elsewhere);
     RUN_TEST(test_legs_go_on_with_the_heading_they_end_with);
     RUN_TEST(test_a_curve_wide_enough_is_driven_without_turns_on_the_spot);
     RUN_TEST(test_the_second_leg_is_named_where_it_fails);

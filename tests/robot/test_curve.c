@@ -296,6 +296,24 @@ static void test_points_of_a_piece_lie_on_its_arc_at_their_fraction_for_every_se
     }
 }
 
+static void test_ready_pieces_are_taken_as_they_are_after_a_turn_to_their_heading(void) {
+    const aisle_waypoint_msg ready[3] = {
+        {.x = 1.0, .y = 2.0, .theta = 1.0, .flags = AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE},
+        {.x = 1.0, .y = 2.0, .theta = 1.5},
+        {.x = 1.0, .y = 1.0, .theta = 1.5, .curvature = 0.25F, .flags = AISLE_WAYPOINT_REVERSE}};
+    aisle_curve_begin(&curve, (aisle_pose2){1.0, 2.0, 0.5});
+    aisle_curve_pieces(&curve, ready, 3);
+    TEST_ASSERT_EQUAL_UINT32(4U, curve.n);
+    TEST_ASSERT_TRUE((w[0].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0);
+    TEST_ASSERT_EQUAL_INT16(ready[0].flags, w[1].flags);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 1.0, w[1].theta);
+    TEST_ASSERT_EQUAL_MEMORY(&ready[1], &w[2], 2U * sizeof w[0]);
+    curve.capacity = 5;
+    aisle_curve_pieces(&curve, (const aisle_waypoint_msg[3]){ready[2], ready[1], ready[2]}, 3);
+    TEST_ASSERT_TRUE(curve.overflow && curve.n == 5U);
+    curve.capacity = CAPACITY;
+}
+
 static void test_a_full_array_is_told_and_not_overrun(void) {
     aisle_vec2 points[80];
     for (int i = 0; i < 80; i++) {
@@ -324,6 +342,7 @@ int main(void) {
     RUN_TEST(test_a_biarc_on_a_circle_is_that_circle);
     RUN_TEST(test_a_straight_biarc_is_straight);
     RUN_TEST(test_points_of_a_piece_lie_on_its_arc_at_their_fraction_for_every_seed);
+    RUN_TEST(test_ready_pieces_are_taken_as_they_are_after_a_turn_to_their_heading);
     RUN_TEST(test_a_full_array_is_told_and_not_overrun);
     return UNITY_END();
 }

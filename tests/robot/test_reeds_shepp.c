@@ -83,6 +83,25 @@ static void test_no_drive_is_shorter_than_the_shortest_word_and_every_word_leads
     }
 }
 
+static void test_every_word_exists_somewhere(void) {
+    int found[AISLE_REEDS_SHEPP_WORDS] = {0};
+    for (uint64_t s = 0; s < 2000; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        aisle_pose2 from = {0.0, 0.0, 0.0}, to;
+        to.x = uniform(&rng, -8.0, 8.0);
+        to.y = uniform(&rng, -8.0, 8.0);
+        to.theta = uniform(&rng, -3.1, 3.1);
+        const aisle_reeds_shepp between = aisle_reeds_shepp_between(from, to, RADIUS);
+        for (uint32_t n = 0; n < AISLE_REEDS_SHEPP_WORDS; n++) {
+            aisle_reeds_shepp_word word;
+            found[n] += aisle_reeds_shepp_word_of(&between, n, (double)INFINITY, &word) ? 1 : 0;
+        }
+    }
+    for (uint32_t n = 0; n < AISLE_REEDS_SHEPP_WORDS; n++) {
+        TEST_ASSERT_TRUE(found[n] >= 20);
+    }
+}
+
 static void test_both_ways_are_as_long(void) {
     for (uint64_t s = 0; s < 500; s++) {
         aisle_rng rng = aisle_rng_seed(s);
@@ -98,6 +117,7 @@ static void test_both_ways_are_as_long(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_no_drive_is_shorter_than_the_shortest_word_and_every_word_leads_there);
+    RUN_TEST(test_every_word_exists_somewhere);
     RUN_TEST(test_both_ways_are_as_long);
     return UNITY_END();
 }
