@@ -46,7 +46,11 @@ static const struct attempt {
     uint32_t headings; // in a full turn
     uint32_t most;     // nodes expanded
     uint32_t tree;     // nodes expanded from the goal before; 0: no tree
-} attempts[] = {{0.25, 16, 150, 0}, {0.25, 16, 4000, 256}, {0.1, 32, UINT32_MAX, 256}, {0.05, 64, UINT32_MAX, 256}};
+} attempts[] = {{0.35, 16, 150, 0},
+                {0.35, 16, 16000, 256},
+                {0.25, 16, 16000, 256},
+                {0.1, 32, UINT32_MAX, 256},
+                {0.05, 64, UINT32_MAX, 256}};
 #define ATTEMPTS (sizeof attempts / sizeof attempts[0])
 #define STEP_CELLS 1.5    // length of a step
 #define TRAPPED_MOST 300U // nodes expanded where the tree ended by itself: a finer one may come out
@@ -529,7 +533,7 @@ static void grow_tree(aisle_manoeuvre *self) {
 }
 
 static void end_attempt(aisle_manoeuvre *self) {
-    if (self->attempt + 1U < ATTEMPTS && !(self->full && self->attempt > 1U)) {
+    if (self->attempt + 1U < ATTEMPTS && !(self->full && self->attempt > 2U)) {
         begin_attempt(self, self->attempt + 1U);
     } else {
         self->phase = AISLE_MANOEUVRE_FAILED;

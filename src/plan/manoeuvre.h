@@ -9,8 +9,9 @@
 // the shortest way of the disc inside, moved to the middle of the room they find. Ours: the end of a step is tested when
 // it is made, the motion when it comes up, since most never do; the links.
 // First a few nodes in coarse cells; then, where these do not come to the goal, with a tree of some nodes from the goal
-// backwards for targets, too (what can be driven one way can be driven the other), in coarse cells and in fine ones, at
-// last, where the tree or the search ended by itself, in finer ones. Then the chain is shortened: from each
+// backwards for targets, too (what can be driven one way can be driven the other), in coarse cells, in finer ones, and,
+// where the tree or the search ended by itself, in still finer ones (manoeuvre.c: a hall is too large for these; coarse
+// cells with exact configurations in them find nearly all). Then the chain is shortened: from each
 // configuration on it the ways of steer.h to later ones are tried and taken where they cost less.
 // Cost: metres, AISLE_MANOEUVRE_REVERSE for one backwards, and what cusps and turns add (manoeuvre.c). Not an optimum,
 // and no proof where it finds none.
@@ -31,7 +32,7 @@
 #define AISLE_MANOEUVRE_TARGETS 512U   // configurations that are linked to
 #define AISLE_MANOEUVRE_CHAIN 512U     // moves of a way
 #define AISLE_MANOEUVRE_NODES 65536U   // at most
-#define AISLE_MANOEUVRE_UNITS 1200000U // spent on one search
+#define AISLE_MANOEUVRE_UNITS 1500000U // spent on one search
 
 typedef struct aisle_manoeuvre_request {
     const aisle_space *space; // its layout and vehicle; the mode does not matter
