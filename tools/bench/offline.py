@@ -47,15 +47,18 @@ def add_options(parser: argparse.ArgumentParser, folder: Path) -> None:
     query.add_plan_options(parser)
 
 
-def answers(args: argparse.Namespace, world: World, msg: vehicle_t, legs: list[query.Leg]) -> list[Answer]:
-    """One per leg, in order."""
+def answers(
+    args: argparse.Namespace, world: World, msg: vehicle_t, legs: list[query.Leg], times: bool = True
+) -> list[Answer]:
+    """One per leg, in order; without times their milliseconds are 0."""
     with tempfile.TemporaryDirectory() as folder:
         log, out = (Path(folder) / n for n in ("in.log", "out.log"))
         write_log(args, log, world, msg, legs)
         config = ["--config", str(args.config)] if args.config is not None else []
         run([args.replay, log, "--out", out, *config])
         recording = Recording(out, PREFIX)
-        times = {q["query_id"]: q["ms_median"] for q in timed(args.replay, log, args.repeat, args.config)}
+        told = timed(args.replay, log, args.repeat, args.config) if times else []
+        times_ms = {q["query_id"]: q["ms_median"] for q in told}
     replies = {r.query_id: r for r in recording.replies}
     obstacles = None if args.no_check else Obstacles(world)
     made = []
@@ -65,7 +68,7 @@ def answers(args: argparse.Namespace, world: World, msg: vehicle_t, legs: list[q
         reply = replies[ident]
         judged = reply.status == path_t.OK and obstacles is not None
         report = check_path(reply, obstacles, vehicle.body(msg), asked) if judged else None
-        made.append(Answer(asked, reply, times.get(ident, 0.0), report))
+        made.append(Answer(asked, reply, times_ms.get(ident, 0.0), report))
     return made
 
 
