@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "plan/zones.h"
 #include "robot/profile.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static bool arc_free(void *ctx, const aisle_waypoint_msg *from, const aisle_wayp
     aisle_compose *self = (aisle_compose *)ctx;
     const aisle_space *space = self->request.space;
     const double need = space->vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
-    return arc_is_sure(self, to) || aisle_space_piece_free(space, from, to, need, &self->units);
+    return aisle_zones_allow_piece(space->layout, from, to, NULL) &&
+           (arc_is_sure(self, to) || aisle_space_piece_free(space, from, to, need, &self->units));
 }
 
 static aisle_corner_rule corner_rule(aisle_compose *self, const aisle_leg *leg) {
@@ -113,8 +115,8 @@ static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
     aisle_curve_goal(curve, goal->id);
 }
 
-bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, double need,
-                            uint32_t *units) {
+// Lays leg i alone, from its seed.
+static aisle_curve lay_seed(aisle_compose *self, const aisle_compose_request *request, uint32_t i) {
     self->request = *request;
     const aisle_leg *leg = &request->legs[i];
     const aisle_vec2 *p = request->points + leg->first;
@@ -122,6 +124,31 @@ bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *re
     aisle_curve curve = {.w = self->raw, .capacity = AISLE_PATH_MAX_WAYPOINTS};
     aisle_curve_begin(&curve, (aisle_pose2){p[0].x, p[0].y, aisle_atan2(p[1].y - p[0].y, p[1].x - p[0].x)});
     aisle_curve_polyline(&curve, p, leg->count, &rule);
+    return curve;
+}
+
+uint32_t aisle_compose_way_opposed(aisle_compose *self, const aisle_compose_request *request, uint32_t i,
+                                   aisle_opposed *out) {
+    const aisle_curve curve = lay_seed(self, request, i);
+    uint32_t zones = 0;
+    for (uint32_t k = 1; k < curve.n; k++) {
+        const aisle_waypoint_msg *to = &curve.w[k];
+        int32_t id = 0;
+        if (aisle_zones_allow_piece(request->space->layout, to - 1, to, &id) || (zones > 0U && id == out->id)) {
+            continue;
+        }
+        zones++;
+        if (zones == 1U) {
+            const aisle_pose2 middle = aisle_piece_at(to - 1, to, 0.5);
+            *out = (aisle_opposed){.id = id, .place = aisle_vec2_of(middle.x, middle.y)};
+        }
+    }
+    return zones;
+}
+
+bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, double need,
+                            uint32_t *units) {
+    const aisle_curve curve = lay_seed(self, request, i);
     bool free = !curve.overflow;
     for (uint32_t k = 1; free && k < curve.n; k++) {
         free = aisle_space_piece_free(request->space, &curve.w[k - 1U], &curve.w[k], need, units);
@@ -197,7 +224,9 @@ static void value_piece(aisle_compose *self, const aisle_waypoint_msg *from, con
     if (length > 0.0 && (double)to->clearance < self->request.space->vehicle->creep_clearance) {
         sample_piece(self, from, to, length, &density, &risk);
     }
-    self->value += length * density;
+    self->value +=
+        length * density + aisle_zones_toll_piece(self->request.space->layout, self->request.objective, from, to);
+    self->penalty += aisle_zones_penalty_piece(self->request.space->layout, from, to);
     self->risk += length * risk;
     if ((to->flags & AISLE_WAYPOINT_GOAL) != 0 && self->leg < self->request.leg_count) {
         aisle_leg *leg = &self->request.legs[self->leg++];
@@ -334,7 +363,7 @@ aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_reques
     }
     self->longest = aisle_max(AISLE_COMPOSE_PIECE, raw_length(self) / (double)AISLE_COMPOSE_PIECES);
     self->leg = 0;
-    self->value = self->risk = 0.0;
+    self->value = self->risk = self->penalty = 0.0;
     self->path->waypoints[0] = self->raw[0];
     self->path->num_waypoints = 1;
     take_piece(self, 1);

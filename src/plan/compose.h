@@ -48,6 +48,7 @@ typedef struct aisle_compose {
     uint32_t leg;                     // being laid, later: whose value is being summed up
     double value;                     // of the leg so far
     double risk;                      // m, of the path so far: length times risk
+    double penalty;                   // m, what PENALTY zones add to the path so far
     uint32_t units;
 } aisle_compose;
 
@@ -58,6 +59,16 @@ void aisle_compose_carve(aisle_compose *self, aisle_arena *arena);
 // its work to *units: O(pieces * obstacles near), not sliced.
 bool aisle_compose_way_free(aisle_compose *self, const aisle_compose_request *request, uint32_t i, double need,
                             uint32_t *units);
+
+typedef struct aisle_opposed { // a DIRECTED zone that a way is against
+    int32_t id;
+    aisle_vec2 place; // m, on the way
+} aisle_opposed;
+
+// The seed of leg i laid likewise: is it against DIRECTED zones? How many there are, at least (0: none); the first in
+// *out. It, too, spoils the path.
+uint32_t aisle_compose_way_opposed(aisle_compose *self, const aisle_compose_request *request, uint32_t i,
+                                   aisle_opposed *out);
 
 // Begins: lays the geometry. AISLE_ERR_CAPACITY: more waypoints than a path_t holds.
 aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_request *request, aisle_path_msg *path);

@@ -1,5 +1,7 @@
 #include "plan/cost.h"
 
+#include "plan/zones.h"
+
 double aisle_leg_cost(const aisle_space *space, const aisle_objective *objective, aisle_vec2 a, aisle_vec2 b,
                       uint32_t *units) {
     double length = aisle_vec2_distance(a, b);
@@ -13,5 +15,5 @@ double aisle_leg_cost(const aisle_space *space, const aisle_objective *objective
         sum += aisle_objective_density(objective, aisle_space_clearance_about(space, p), 0.0);
     }
     *units += (steps + 3U) / 4U; // a sample costs about a quarter of a grid node
-    return sum * length / (double)steps;
+    return sum * length / (double)steps + aisle_zones_toll(space->layout, objective, a, b);
 }

@@ -13,6 +13,7 @@
 // where the tree or the search ended by itself, in still finer ones (manoeuvre.c: a hall is too large for these; coarse
 // cells with exact configurations in them find nearly all). Then the chain is shortened: from each
 // configuration on it the ways of steer.h to later ones are tried and taken where they cost less.
+// No motion is against a DIRECTED zone (zones.h); tolls are not minded.
 // Cost: metres, AISLE_MANOEUVRE_REVERSE for one backwards, and what cusps and turns add (manoeuvre.c). Not an optimum,
 // and no proof where it finds none.
 // Files: manoeuvre.c (search), manoeuvre_targets.c, manoeuvre_shorten.c.

@@ -60,5 +60,5 @@ double aisle_objective_density(const aisle_objective *self, double clearance, do
 }
 
 bool aisle_objective_is_length(const aisle_objective *self) {
-    return self->kind == AISLE_OPTIONS_SHORTEST;
+    return self->kind == AISLE_OPTIONS_SHORTEST && !self->has_tolls;
 }

@@ -18,13 +18,15 @@
 
 #define AISLE_OBJECTIVE_RISK_WEIGHT 15.0
 #define AISLE_OBJECTIVE_DENSITY_MAX 16.0
-#define AISLE_GRAVITY 9.81 // m/s2
+#define AISLE_PENALTY_WEIGHT 15.0 // of a PENALTY zone's value: a metre at value 1 is as bad as one at the margin
+#define AISLE_GRAVITY 9.81        // m/s2
 
 typedef struct aisle_objective {
     int8_t kind;        // AISLE_OPTIONS_SAFEST, ...
     double risk_weight; // [0, 15]
     double creep_clearance, creep_speed, v_max, omega_max, lateral_a_max;
     double rolling, idle; // N, W, both divided by what they give at v_max
+    bool has_tolls;       // zones add to it (zones.h): whoever knows the layout sets it; false at first
 } aisle_objective;
 
 // False: the options name no objective of this kind.
@@ -33,6 +35,6 @@ bool aisle_objective_of(const aisle_options_msg *options, const aisle_vehicle *v
 // Cost per metre, in [1, AISLE_OBJECTIVE_DENSITY_MAX]; clearance m (negative reads as 0), curvature 1/m of either sign.
 double aisle_objective_density(const aisle_objective *self, double clearance, double curvature);
 
-// True if the density does not depend on the place: only the length counts.
+// True if the cost does not depend on the place: only the length counts.
 bool aisle_objective_is_length(const aisle_objective *self);
 #endif

@@ -127,6 +127,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_swarm(self, units);
     case AISLE_ROUTE_PAPER:
         return aisle_route_step_paper(self, units);
+    case AISLE_ROUTE_ONE_WAY:
+        return aisle_route_step_one_way(self, units);
     case AISLE_ROUTE_WHY:
         return aisle_route_step_why(self, units);
     case AISLE_ROUTE_NEXT:

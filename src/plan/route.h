@@ -18,6 +18,10 @@
 // Planner by name: ASTAR leaves the swarm out; PSO is the objective's GRID way alone and takes the swarm's path wherever
 // it is proved; PSO with objective PAPER is the paper's own swarm (PAPER) alone, its path or a refusal (BUDGET: it found
 // none, which proves nothing).
+// Zones (zones.h): tangent ways must obey DIRECTED ones, else the leg is the grid's; PENALTY zones add what they cost to
+// every measure (SAFEST: as risk), and a GRID way of the objective's own to SHORT and CLEAR. Where zones are directed and
+// no way was found, ONE_WAY asks for a proof that they shut every way (one_way.h): NO_PATH, and if a way was found that
+// only disobeys, the zone it is first against.
 // No way at all: WHY, and OPENING after it if that is certain (opening.h). The tangent search's proof for the disc inside
 // the footprint goes straight there; the grid is a second opinion: where it sees a doubt the dear attempts are made all
 // the same.
@@ -40,6 +44,7 @@
 #include "plan/leg.h"
 #include "plan/manoeuvre.h"
 #include "plan/nearest.h"
+#include "plan/one_way.h"
 #include "plan/opening.h"
 #include "plan/paper_swarm.h"
 #include "plan/seed.h"
@@ -106,6 +111,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_VERIFY,
     AISLE_ROUTE_SWARM,
     AISLE_ROUTE_PAPER,
+    AISLE_ROUTE_ONE_WAY, // do zones shut every way?
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_NEXT, // the way under way is done with
     AISLE_ROUTE_DROP, // or leads nowhere
@@ -149,6 +155,10 @@ typedef struct aisle_route {
     aisle_paper_swarm paper;
     aisle_compose compose;
     aisle_verify verify;
+    aisle_one_way one_way;
+    bool is_one_way_asked;  // for the leg under way
+    uint32_t opposed_zones; // DIRECTED ones that a way of the leg is against which is none for that alone
+    aisle_opposed opposed;  // the first of them
     aisle_why why;
     aisle_nearest nearest;
     aisle_opening opening;

@@ -127,7 +127,7 @@ static bool is_settled(const aisle_route *self) {
     if (self->request.options.planner == AISLE_OPTIONS_PSO) {
         return false;
     }
-    if (aisle_objective_is_length(&self->objective)) { // a disc's taut string cannot be beaten on length
+    if (self->objective.kind == AISLE_OPTIONS_SHORTEST) { // a disc's taut string cannot be beaten on length
         return self->request.options.objective != AISLE_OPTIONS_SHORTEST || aisle_vehicle_is_disc(self->vehicle) ||
                (double)self->path->length <= length_bound(self) * (1.0 + WORTH_A_SWARM);
     }
@@ -177,8 +177,8 @@ static aisle_status disproved(aisle_route *self) {
         return rebuild(self);
     }
     bool body = verify->fault == AISLE_VERIFY_COLLISION || verify->fault == AISLE_VERIFY_CURVATURE ||
-                verify->fault == AISLE_VERIFY_HEADING || verify->fault == AISLE_VERIFY_START ||
-                verify->fault == AISLE_VERIFY_GOAL;
+                verify->fault == AISLE_VERIFY_HEADING || verify->fault == AISLE_VERIFY_DIRECTION ||
+                verify->fault == AISLE_VERIFY_START || verify->fault == AISLE_VERIFY_GOAL;
     int16_t cause = body ? AISLE_STATUS_KINEMATIC : AISLE_STATUS_VERIFY_FAILED;
     const aisle_waypoint_msg *at = &self->path->waypoints[verify->fault_waypoint];
     bool placed = verify->fault == AISLE_VERIFY_COLLISION || verify->fault == AISLE_VERIFY_CREEP;

@@ -80,6 +80,7 @@ static void begin_leg(aisle_route *self) {
     aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
     double beeline = aisle_vec2_distance(from, to);
     self->no_way = false;
+    aisle_route_begin_zones(self);
     double bound = self->way_index == 0U ? beeline : leg->bound; // the first way's search has raised it
     uint32_t pieces = self->way_index == 0U && !self->is_wide ? 0U : leg->piece_count;
     *leg = (aisle_leg){.first = self->point_count,

@@ -2,13 +2,14 @@
 //
 // route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST.
 // route_order.c: ORDER. route_tangent.c: TANGENT. route_manoeuvre.c: MANOEUVRE. route_seed.c: SEED, TAUT.
-// route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
+// route_zones.c: ONE_WAY. route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
 #define AISLE_PLAN_ROUTE_STAGES_H
 
 #include "plan/route.h"
+#include "plan/zones.h"
 
 #define AISLE_ROUTE_ATTEMPTS_CHEAP 2U // at a seed, before the proof of WHY, see route.h
 
@@ -122,6 +123,18 @@ aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
 // OPENING: what would have to go; the cause is told already.
 aisle_status aisle_route_step_sides(aisle_route *self, uint32_t units); // SIDES: the same
 aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units);
+
+// The polygon at its centre, as one of those whose removal opens the way.
+void aisle_route_tell_zone(aisle_route *self, const aisle_zone *zone);
+
+// route_zones.c
+// A leg begins: what of its search hangs on zones.
+void aisle_route_begin_zones(aisle_route *self);
+// Does the leg's seed, laid, obey DIRECTED zones? If not, the first one is remembered.
+bool aisle_route_way_obeys(aisle_route *self);
+// ONE_WAY: do the zones shut every way? False: not to be asked (again), nothing begun.
+bool aisle_route_begin_one_way(aisle_route *self);
+aisle_status aisle_route_step_one_way(aisle_route *self, uint32_t units);
 
 // route_paper.c: the paper's own swarm in place of everything before BUILD.
 void aisle_route_begin_paper(aisle_route *self);

@@ -67,7 +67,8 @@ static bool take_tight_way(aisle_route *self) {
         bool may_bend = vehicle->curvature_max <= 0.0 || radius * vehicle->curvature_max >= 1.0;
         if (may_bend && tried[i] > searched[self->tangent_search] && take_way(self, radius) &&
             aisle_compose_way_free(&self->compose, &request, self->leg, self->room - 0.5 * AISLE_SPACE_SLACK,
-                                   &self->spent)) {
+                                   &self->spent) &&
+            aisle_route_way_obeys(self)) {
             return true;
         }
     }
@@ -79,7 +80,8 @@ static bool take_tight_way(aisle_route *self) {
 static bool take_wide_way(aisle_route *self) {
     double radius = radius_at(self, 1.0);
     return take_way(self, radius) &&
-           radius * self->vehicle->curvature_max >= (self->vehicle->curvature_max > 0.0 ? 1.0 : 0.0);
+           radius * self->vehicle->curvature_max >= (self->vehicle->curvature_max > 0.0 ? 1.0 : 0.0) &&
+           aisle_route_way_obeys(self);
 }
 
 // Takes the way found if it is one for the body, else it may lead a search for one.
@@ -100,9 +102,10 @@ static bool take(aisle_route *self) {
     return false;
 }
 
-// None of the ways is one for the body as it is.
+// None of the ways is one for the body as it is. Where zones forbid one, the grid knows of ways round; the search for a
+// manoeuvre would be led along the forbidden one.
 static void end_searches(aisle_route *self) {
-    if (!aisle_route_begin_manoeuvre(self)) {
+    if (self->opposed_zones > 0U || !aisle_route_begin_manoeuvre(self)) {
         aisle_route_begin_seed(self, 0);
     }
 }

@@ -1,6 +1,7 @@
 #include "plan/route_stages.h"
 
 #include "base/check.h"
+#include "plan/zones.h"
 
 #include <math.h>
 
@@ -13,6 +14,12 @@
 // by the other's answer, nor by the safest or the shortest one.
 static const aisle_way shortest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST}};
 static const aisle_way safest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST}, {AISLE_WAY_CLEAR, AISLE_OPTIONS_SAFEST}};
+// The tangent search knows no tolls: where zones ask some, the grid's search has its turn, too.
+static const aisle_way shortest_tolled[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
+                                            {AISLE_WAY_GRID, AISLE_OPTIONS_SHORTEST}};
+static const aisle_way safest_tolled[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
+                                          {AISLE_WAY_CLEAR, AISLE_OPTIONS_SAFEST},
+                                          {AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST}};
 static const aisle_way quickest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
                                      {AISLE_WAY_CLEAR, AISLE_OPTIONS_SAFEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
@@ -30,10 +37,17 @@ static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
         const aisle_way *way = wish == AISLE_OPTIONS_PAPER ? &papers : &by_grid[wish];
         return n == 0U ? way : NULL;
     }
+    bool tolls = aisle_zones_any_toll(self->layout, wish);
     switch (wish) {
     case AISLE_OPTIONS_SHORTEST:
+        if (tolls) {
+            return n < sizeof shortest_tolled / sizeof shortest_tolled[0] ? &shortest_tolled[n] : NULL;
+        }
         return n < sizeof shortest / sizeof shortest[0] ? &shortest[n] : NULL;
     case AISLE_OPTIONS_SAFEST:
+        if (tolls) {
+            return n < sizeof safest_tolled / sizeof safest_tolled[0] ? &safest_tolled[n] : NULL;
+        }
         if (!aisle_vehicle_is_disc(self->vehicle)) { // whose clear ways are found in fewer places
             return n < sizeof quickest / sizeof quickest[0] ? &quickest[n] : NULL;
         }
@@ -49,6 +63,7 @@ static void begin_way(aisle_route *self) {
     options.objective = self->way->objective;
     bool known = aisle_objective_of(&options, vehicle, &self->objective);
     AISLE_ASSERT(known);
+    self->objective.has_tolls = aisle_zones_any_toll(self->layout, self->objective.kind);
     bool is_short = self->way->kind == AISLE_WAY_SHORT && aisle_vehicle_is_disc(vehicle);
     double keep = vehicle->margin + (is_short ? SHORT_SLACK : AISLE_SPACE_SLACK);
     bool is_clear = self->way->kind == AISLE_WAY_CLEAR;
@@ -107,23 +122,28 @@ aisle_status aisle_route_give_way_up(aisle_route *self, int16_t cause, int32_t i
 static double safety(const aisle_route *self) {
     const aisle_path_msg *path = self->path;
     double weight = (double)self->request.options.risk_weight;
+    double penalty = self->compose.penalty;
     if (weight > 0.0) {
-        return (double)path->length * (1.0 + weight * (double)path->risk);
+        return (double)path->length * (1.0 + weight * (double)path->risk) + penalty;
     }
-    double steps = floor((double)path->risk / RISK_STEP + 0.5);
+    double length = aisle_max((double)path->length, 1e-9);
+    double share = penalty / (AISLE_PENALTY_WEIGHT * length); // a metre at value 1 counts as one at the margin
+    double steps = floor(((double)path->risk + share) / RISK_STEP + 0.5);
     return steps * LENGTH_SPAN + aisle_min((double)path->length, 0.5 * LENGTH_SPAN);
 }
 
 double aisle_route_measure(const aisle_route *self) {
+    double length = aisle_max((double)self->path->length, 1e-9);
+    double dearer = 1.0 + self->compose.penalty / length;
     switch (self->request.options.objective) {
     case AISLE_OPTIONS_SAFEST:
         return safety(self);
     case AISLE_OPTIONS_FASTEST:
-        return (double)self->path->duration;
+        return (double)self->path->duration * dearer;
     case AISLE_OPTIONS_LEAST_ENERGY:
-        return (double)self->path->energy;
+        return (double)self->path->energy * dearer;
     default:
-        return (double)self->path->length;
+        return (double)self->path->length + self->compose.penalty;
     }
 }
 

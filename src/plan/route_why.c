@@ -1,6 +1,9 @@
 #include "plan/route_stages.h"
 
 void aisle_route_begin_why(aisle_route *self, uint32_t stride) {
+    if (aisle_route_begin_one_way(self)) {
+        return;
+    }
     aisle_why_start(&self->why, &self->seed, &self->space, aisle_route_place(aisle_route_leg_start(self, self->leg)),
                     aisle_route_place(&self->request.goals[self->leg]), stride);
     self->stage = AISLE_ROUTE_WHY;
@@ -43,7 +46,7 @@ static aisle_vec2 centre_of(const aisle_convex *shape) {
     return sum;
 }
 
-static void tell_member(aisle_route *self, const aisle_zone *zone) {
+void aisle_route_tell_zone(aisle_route *self, const aisle_zone *zone) {
     aisle_convex shape = aisle_layout_zone_shape(self->layout, zone);
     aisle_route_tell(self, centre_of(&shape), zone->id, AISLE_WAYPOINT_GOAL);
 }
@@ -81,7 +84,7 @@ aisle_status aisle_route_step_sides(aisle_route *self, uint32_t units) {
     for (uint32_t i = 0; i < aisle_layout_zone_count(self->layout); i++) {
         const aisle_zone *zone = aisle_layout_zone(self->layout, i);
         if (zone->id == self->why.gap.id[self->side]) {
-            tell_member(self, zone);
+            aisle_route_tell_zone(self, zone);
         }
     }
     self->stage = AISLE_ROUTE_END;
@@ -142,7 +145,7 @@ aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units) {
     }
     const uint32_t zones[AISLE_LAYOUT_WITHOUT_MAX] = {opening->first, opening->second};
     for (uint32_t i = 0; st == AISLE_OK && i < opening->without.count; i++) {
-        tell_member(self, aisle_layout_zone(self->layout, zones[i]));
+        aisle_route_tell_zone(self, aisle_layout_zone(self->layout, zones[i]));
     }
     self->stage = AISLE_ROUTE_END;
     return AISLE_OK;

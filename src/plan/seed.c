@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "plan/cost.h"
+#include "plan/zones.h"
 
 #include <math.h>
 
@@ -43,18 +44,32 @@ static void tabulate(aisle_seed *self) {
 
 static uint32_t factor_of(const aisle_seed *self, uint32_t cell) {
     uint32_t field = self->space->grid->field[cell];
-    return field < AISLE_SEED_TABLE ? self->factor[field] : factor_at(self, field);
+    uint32_t factor = field < AISLE_SEED_TABLE ? self->factor[field] : factor_at(self, field);
+    if (self->objective->has_tolls) {
+        aisle_vec2 p = aisle_lattice_centre(&self->space->grid->lattice, cell);
+        double toll = aisle_zones_toll_at(self->space->layout, self->objective, p);
+        factor += (uint32_t)(aisle_min(toll, AISLE_OBJECTIVE_DENSITY_MAX) * (double)AISLE_ASTAR_FACTOR_ONE + 0.5);
+    }
+    return factor < AISLE_ASTAR_FACTOR_MAX ? factor : AISLE_ASTAR_FACTOR_MAX;
+}
+
+// Are the zones for the step?
+static bool is_allowed(const aisle_seed *self, uint32_t from, uint32_t to) {
+    const aisle_space *space = self->space;
+    const aisle_lattice *lattice = &space->grid->lattice;
+    return !aisle_zones_any_directed(space->layout) ||
+           aisle_zones_allow(space->layout, aisle_lattice_centre(lattice, grid_cell(self, from)),
+                             aisle_lattice_centre(lattice, grid_cell(self, to)), space->zone_room, NULL);
 }
 
 static uint32_t enter_free_turn(void *ctx, uint32_t from, uint32_t to, uint8_t dir) {
     aisle_seed *self = (aisle_seed *)ctx;
-    (void)from;
     (void)dir;
     uint32_t cell = grid_cell(self, to);
     if (!aisle_space_cell_free(self->space, cell, step_length(self), &self->units)) {
         return AISLE_ASTAR_BARRED_CELL;
     }
-    return factor_of(self, cell);
+    return is_allowed(self, from, to) ? factor_of(self, cell) : AISLE_ASTAR_BARRED;
 }
 
 // Where a cell of the ROOMIEST search stands. *sure: in its centre, with room for every step to another such. False:
@@ -85,8 +100,8 @@ static uint32_t enter_roomiest(void *ctx, uint32_t from, uint32_t to, uint8_t di
     if (!stand(self, to, &b, &b_sure)) {
         return AISLE_ASTAR_BARRED_CELL;
     }
-    bool free = stand(self, from, &a, &a_sure) &&
-                ((a_sure && b_sure) || aisle_space_sweep_free(self->space, a, b, &self->units));
+    bool free = stand(self, from, &a, &a_sure) && ((a_sure && b_sure && is_allowed(self, from, to)) ||
+                                                   aisle_space_sweep_free(self->space, a, b, &self->units));
     return free ? factor_of(self, to) : AISLE_ASTAR_BARRED;
 }
 
@@ -262,7 +277,8 @@ static double chain_cost(aisle_seed *self, uint32_t i, uint32_t j) {
         aisle_vec2 a = path_point(self, k);
         aisle_vec2 b = path_point(self, k + 1U);
         double clearance = aisle_space_clearance_about(self->space, aisle_vec2_lerp(a, b, 0.5));
-        sum += aisle_vec2_distance(a, b) * aisle_objective_density(self->objective, clearance, 0.0);
+        sum += aisle_vec2_distance(a, b) * aisle_objective_density(self->objective, clearance, 0.0) +
+               aisle_zones_toll(self->space->layout, self->objective, a, b);
     }
     self->units += (j - i) / 4U;
     return sum;

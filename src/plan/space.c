@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "plan/zones.h"
 #include "robot/curve.h"
 #include "robot/profile.h"
 
@@ -249,6 +250,9 @@ static bool sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, aisl
     if (way.length > 1e-9) {
         way.heading = aisle_vec2_scale(way_to, 1.0 / way.length);
         way.theta = aisle_atan2(way_to.y, way_to.x);
+    }
+    if (!aisle_zones_allow(self->layout, a, b, self->zone_room, NULL)) {
+        return false;
     }
     double s = 0.0;
     double least = 0.5 * self->grid->lattice.res; // a shorter step is not worth a look at the field

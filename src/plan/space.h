@@ -38,6 +38,7 @@ typedef struct aisle_space {
     double far_clearance;           // m, what is told of far places
     double beyond; // m, what an obstacle may lie beyond the centre of its occupied cell; negative where cells are solid
     double lever;  // m, farthest footprint point from the origin, its rounding left out
+    double zone_room; // m, that sweeps keep off DIRECTED zones they are against (zones.h); begin() leaves it alone
     // ALONG: discs on the body's x axis that hold the footprint, for a quick yes
     double disc_x[4], disc_radius;
 } aisle_space;
@@ -59,8 +60,8 @@ bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32
 // cell): a local maximum of the exact gap, deterministic. *gap: there, m, at most reach + a cell. About 60 exact gaps.
 aisle_vec2 aisle_space_roomiest(const aisle_space *self, uint32_t cell, double *gap, uint32_t *units);
 
-// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode? a = b:
-// false.
+// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode, and against
+// no DIRECTED zone? a = b: false.
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Can the body turn to any heading at p?
@@ -82,7 +83,8 @@ void aisle_space_forget(aisle_space *self); // O(words written)
 void aisle_space_note(aisle_space *self, uint32_t cell);
 bool aisle_space_is_noted(const aisle_space *self, uint32_t cell);
 
-// Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN)? a = b: the place alone.
+// Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN), and against no DIRECTED zone? a = b:
+// the place alone.
 bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Gap between the footprint at pose and the nearest obstacle (exact), at most cap; *id that obstacle.

@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "plan/zones.h"
 
 #include <math.h>
 
@@ -38,6 +39,14 @@ static double shortfall(aisle_swarm *self, const aisle_spline_sample *at, double
     return gap >= space->keep ? 0.0 : space->keep - gap;
 }
 
+static void zones_between(const aisle_swarm *self, aisle_vec2 a, aisle_vec2 b, double *violation, double *value) {
+    const aisle_layout *layout = self->space->layout;
+    if (!aisle_zones_allow(layout, a, b, 0.0, NULL)) {
+        *violation += aisle_vec2_distance(a, b);
+    }
+    *value += aisle_zones_toll(layout, self->objective, a, b);
+}
+
 static aisle_pso_cost score(aisle_swarm *self) {
     double violation = 0.0;
     double value = 0.0;
@@ -55,6 +64,9 @@ static aisle_pso_cost score(aisle_swarm *self) {
             violation += ds * (fabs(curvature) - curvature_max) / curvature_max;
         }
         value += ds * aisle_objective_density(self->objective, clearance, curvature);
+        if (i > 0U && self->heeds_zones) {
+            zones_between(self, self->sample[i - 1U].p, at->p, &violation, &value);
+        }
     }
     self->units += self->samples / AISLE_SWARM_SAMPLES_PER_UNIT;
     return (aisle_pso_cost){(float)violation, (float)value};
@@ -150,6 +162,7 @@ aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, cons
     self->start = points[0];
     self->goal = points[count - 1U];
     self->units = 0;
+    self->heeds_zones = objective->has_tolls || aisle_zones_any_directed(space->layout);
     self->polishing = false;
     self->polish_evals = 0;
     place_vias(self, points, count, length);

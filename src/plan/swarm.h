@@ -50,6 +50,7 @@ typedef struct aisle_swarm {
     float step;  // m
     uint32_t at; // 2 * component, + 1 for the way back
     uint32_t polish_evals;
+    bool heeds_zones;         // there are some that bar or cost
     bool polishing, moved;    // moved: in this round
     aisle_pso_cost seed_cost; // of the first particle, once it was scored: a counter for tests and tables
     uint32_t units;

@@ -3,6 +3,7 @@
 #include "base/angle.h"
 #include "base/check.h"
 #include "plan/cost.h"
+#include "plan/zones.h"
 
 #include <math.h>
 #include <string.h>
@@ -37,6 +38,8 @@ static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b, doubl
     double cap = aisle_max(vehicle->creep_clearance, self->space->keep); // no objective cares for more
     double length = aisle_vec2_distance(a, b);
     double samples = floor(length / EXACT_SPACING) + 2.0;
+    double toll = aisle_zones_toll(self->space->layout, self->objective, a, b);
+    most -= toll;
     double theta = aisle_atan2(b.y - a.y, b.x - a.x);
     double sum = samples;                                                    // each at least 1
     double enough = most * (1.0 + 1e-9) * samples / aisle_max(length, 1e-9); // 1e-9: more than rounding
@@ -49,7 +52,7 @@ static double exact_leg_cost(aisle_taut *self, aisle_vec2 a, aisle_vec2 b, doubl
         }
         sum += aisle_objective_density(self->objective, clearance, 0.0) - 1.0;
     }
-    return sum * length / samples;
+    return sum * length / samples + toll;
 }
 
 static uint32_t slot_of(aisle_vec2 a, aisle_vec2 b) {

@@ -212,6 +212,9 @@ static aisle_verify_fault waypoint_fault(aisle_verify *self, uint32_t i) {
         return AISLE_VERIFY_DECODE;
     }
     fault = i == 0 ? first_waypoint_fault(self) : aisle_verify_piece_fault(self, i);
+    if (fault == AISLE_VERIFY_NONE) {
+        fault = aisle_verify_direction_fault(self);
+    }
     if (fault != AISLE_VERIFY_NONE) {
         return fault;
     }

@@ -3,7 +3,7 @@
 // Works on the bytes of a path_t, in double, from the primitive curve its waypoints define, and shares no code with the
 // search: its own geometry of pieces, obstacles straight from the layout's polygons, scan bits and bounds (not the
 // distance field), narrow phase by separating axes, and by libccd (world/collide.h) for all they do not part. Files: verify_piece.c (curve), verify_limits.c (what the
-// vehicle can do), verify_motion.c (collision proof), verify.c (order of it all), release.c (the way out).
+// vehicle can do), verify_zones.c (directed zones), verify_motion.c (collision proof, speed limits of zones), verify.c (order of it all), release.c (the way out).
 //
 // Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal within
 // 1e-9 m,
@@ -51,7 +51,16 @@
 // - rest (below 1e-6 m/s) at first and last waypoint, STOP, both ends of turns, and where REVERSE changes;
 // - length, duration equal the waypoints' sums; 0 <= length_bound <= length; clearance_min not above any piece's;
 // - map and vehicle revisions are those proved against; certificate right.
-// Not proved: the waypoints' clearances, energy, risk and length_bound themselves; speed-limit and directed zones.
+// Zones, by the motion, not by the heading (REVERSE changes nothing):
+// - SPEED_LIMIT: where a piece may be driven faster than a zone's value (1 + 1e-3), the footprint without its margin is
+//   proved off that zone like off an obstacle, so a body that comes nearer than 2e-6 m (0.6 mm where it turns) to a zone
+//   keeps to its limit on the whole piece. Turns on the spot have no speed;
+// - DIRECTED: where the origin is inside, deeper than 1e-6 m, its direction of motion is at most a right angle and
+//   AISLE_VERIFY_AGAINST off the zone's. The part of an arc that is against it is halved like any interval until its
+//   chord, grown by the sagitta, is outside; at a sagitta of 0.4e-6 m it is inside. At most 5000 looks for a zone and a
+//   piece of 20 m; all of a piece count as one unit.
+// PENALTY zones bind nobody: nothing to prove.
+// Not proved: the waypoints' clearances, energy, risk and length_bound themselves.
 // Again. What was proved once and is shown with the basis of that proof is not looked at again if nothing of the basis
 // has changed, for the verdict would be the same: only the digests are made anew (one pass over the bytes), and ids,
 // revisions and certificate are checked. A basis that does not fit changes nothing.
@@ -66,6 +75,7 @@
 #include "world/layout.h"
 
 #define AISLE_VERIFY_EPSILON 1e-6 // m, for rounding
+#define AISLE_VERIFY_AGAINST 2e-3 // rad beyond a right angle to a DIRECTED zone's direction
 #define AISLE_VERIFY_DEPTH 64     // of the interval stack; 29 halvings reach 1 mm from the longest arc
 
 // All that a proof's verdict is a function of, as digests. Only verify.c writes one. A path that is given a new head
@@ -106,8 +116,10 @@ typedef enum aisle_verify_fault {
     AISLE_VERIFY_CURVATURE,
     AISLE_VERIFY_HEADING,
     AISLE_VERIFY_REST,
-    AISLE_VERIFY_SUMS,       // length, duration, bound or clearance_min do not fit the waypoints
-    AISLE_VERIFY_CERTIFICATE // not the crc of these waypoints and revisions
+    AISLE_VERIFY_SUMS,        // length, duration, bound or clearance_min do not fit the waypoints
+    AISLE_VERIFY_CERTIFICATE, // not the crc of these waypoints and revisions
+    AISLE_VERIFY_ZONE_SPEED,  // too fast in a SPEED_LIMIT zone
+    AISLE_VERIFY_DIRECTION    // against a DIRECTED zone's direction
 } aisle_verify_fault;
 
 // What a proof leaves behind. Only verify.c writes one; release() checks it.
@@ -138,6 +150,7 @@ typedef struct aisle_verify_motion { // intervals of the piece in hand; verify_m
     double limit;                    // m of travel: longer bent intervals are halved unseen; 0: none yet
     uint32_t proved;                 // bent intervals since the limit was set
     double margin, growth;           // m: always kept; to be proved on this piece (>= margin)
+    bool heeds_limits;               // SPEED_LIMIT zones slower than the piece are kept off
 } aisle_verify_motion;
 
 typedef enum aisle_verify_phase {
@@ -152,9 +165,9 @@ typedef struct aisle_verify {
     aisle_path_msg *path; // decoded copy; the caller's
     aisle_verify_fault fault;
     uint32_t fault_waypoint; // index the fault is at: the later end of a piece
-    int32_t fault_id;        // COLLISION, CREEP: the obstacle's id or AISLE_LAYOUT_ID_*
-    aisle_vec2 fault_at;     // and the origin's position there, within 1 mm
-    uint32_t intervals;      // looked at
+    int32_t fault_id;    // COLLISION, CREEP: the obstacle's id or AISLE_LAYOUT_ID_*; ZONE_SPEED, DIRECTION: the zone's
+    aisle_vec2 fault_at; // and the origin's position there, within 1 mm
+    uint32_t intervals;  // looked at
     aisle_collide_count collide;
 
     // The verifier's own.

@@ -14,6 +14,7 @@ typedef struct sweep { // the footprint at both ends of an interval, and how far
     aisle_vec2 a[AISLE_SHAPE_VERTICES_MAX], b[AISLE_SHAPE_VERTICES_MAX];
     uint32_t n;
     double reach;    // m: rounding, growth, sagittas, epsilon
+    double growth;   // m
     bool is_coarse;  // it will be halved if it is not proved at once
     aisle_aabb core; // around a and b
     aisle_aabb box;  // around the body
@@ -48,6 +49,7 @@ static double sagitta(const aisle_verify *self, double du) {
 static void sweep_over(const aisle_verify *self, double lo, double hi, double growth, sweep *out) {
     out->n = self->request.vehicle->n;
     out->hull_n = 0;
+    out->growth = growth;
     out->reach = self->request.vehicle->radius + growth + sagitta(self, hi - lo) + AISLE_VERIFY_EPSILON;
     out->is_coarse = false;
     out->core = (aisle_aabb){{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
@@ -204,16 +206,28 @@ static bool leaves_bounds(const aisle_verify *self, const sweep *s) {
     return aisle_layout_has_scan(layout) && !is_inside(s->box, lattice_box(&aisle_layout_grid(layout)->lattice));
 }
 
-static bool touches_polygon(aisle_verify *self, const sweep *s, int32_t *id) {
+// Off a zone that is slower than the piece the footprint alone is to be kept.
+static bool touches_slow_zone(aisle_verify *self, sweep *s, const aisle_zone *zone, const aisle_convex *shape) {
+    if (!self->motion.heeds_limits || self->piece.peak <= (double)zone->value * (1.0 + VERIFY_TOLERANCE)) {
+        return false;
+    }
+    const double reach = s->reach;
+    s->reach = reach - s->growth;
+    const bool touching = touches(self, s, shape->v, shape->n);
+    s->reach = reach;
+    return touching;
+}
+
+static bool touches_polygon(aisle_verify *self, sweep *s, int32_t *id) {
     const aisle_layout *layout = self->request.layout;
     const aisle_zone *zone;
     for (aisle_layout_walk walk = aisle_layout_walk_over(layout, s->box); aisle_layout_walk_next(&walk, &zone);) {
-        if ((zone->kind != AISLE_POLYGON_OBSTACLE && zone->kind != AISLE_POLYGON_KEEPOUT) ||
-            !aisle_aabb_overlap(zone->box, s->box)) {
+        const bool is_solid = zone->kind == AISLE_POLYGON_OBSTACLE || zone->kind == AISLE_POLYGON_KEEPOUT;
+        if ((!is_solid && zone->kind != AISLE_POLYGON_SPEED_LIMIT) || !aisle_aabb_overlap(zone->box, s->box)) {
             continue;
         }
         aisle_convex shape = aisle_layout_zone_shape(layout, zone);
-        if (touches(self, s, shape.v, shape.n)) {
+        if (is_solid ? touches(self, s, shape.v, shape.n) : touches_slow_zone(self, s, zone, &shape)) {
             *id = zone->id;
             return true;
         }
@@ -332,6 +346,7 @@ void aisle_verify_motion_begin(aisle_verify *self) {
     if (fast) {
         motion->growth = aisle_max(motion->margin, vehicle->creep_clearance * (1.0 - VERIFY_TOLERANCE));
     }
+    motion->heeds_limits = aisle_layout_has_kind(self->request.layout, AISLE_POLYGON_SPEED_LIMIT);
     motion->turn = self->piece.turn;
     motion->lo = 0.0;
     motion->hi[0] = 1.0;
@@ -360,20 +375,21 @@ static aisle_status advance(aisle_verify *self) {
     return AISLE_BUSY;
 }
 
-// Too fast, or too close at any speed?
+// Too close at any speed, too fast for what is near, or for a zone?
 static aisle_status blame(aisle_verify *self, double lo, double hi, int32_t id) {
     aisle_verify_motion *motion = &self->motion;
     sweep s;
-    int32_t margin_id;
-    self->fault = AISLE_VERIFY_CREEP;
-    self->fault_id = id;
+    self->fault = AISLE_VERIFY_COLLISION;
     self->fault_at = aisle_verify_piece_origin(&self->piece, 0.5 * (lo + hi));
+    motion->heeds_limits = false;
     sweep_over(self, lo, hi, motion->margin, &s);
-    if (!(motion->growth > motion->margin)) {
-        self->fault = AISLE_VERIFY_COLLISION;
-    } else if (!is_free(self, &s, &margin_id)) {
-        self->fault = AISLE_VERIFY_COLLISION;
-        self->fault_id = margin_id;
+    if (is_free(self, &s, &self->fault_id)) {
+        sweep_over(self, lo, hi, motion->growth, &s);
+        self->fault = AISLE_VERIFY_CREEP;
+        if (is_free(self, &s, &self->fault_id)) {
+            self->fault = AISLE_VERIFY_ZONE_SPEED;
+            self->fault_id = id;
+        }
     }
     return AISLE_ERR_DATA;
 }

@@ -39,6 +39,10 @@ aisle_verify_fault aisle_verify_waypoint_fault(const aisle_verify *self, uint32_
 // What is wrong with piece i (self->piece), self->s and self->along being those before it.
 aisle_verify_fault aisle_verify_piece_fault(const aisle_verify *self, uint32_t i);
 
+// ---- verify_zones.c
+// Does self->piece move against a DIRECTED zone inside it? fault_id and fault_at say where.
+aisle_verify_fault aisle_verify_direction_fault(aisle_verify *self);
+
 // ---- verify_motion.c
 // Takes the whole of self->piece in hand.
 void aisle_verify_motion_begin(aisle_verify *self);

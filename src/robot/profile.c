@@ -11,7 +11,8 @@
 #define CHORD_EXCESS 1e-6 // relative: curvature travels as float
 #define OVERREACH 0.05    // m, see the header
 #define CUTS_MAX 64.0
-#define TOUCH 1e-6 // m, more than all rounding of places and gaps together
+#define TOUCH 1e-6      // m, more than all rounding of places and gaps together
+#define TOUCH_BENT 2e-3 // m, the same where the body turns or bends: more than the verifier's own overreach
 
 typedef struct piece { // between two waypoints
     const aisle_waypoint_msg *from, *to;
@@ -135,7 +136,8 @@ static double cuts_of(const aisle_vehicle *vehicle, const piece *p, double stray
 }
 
 static aisle_aabb box_of(const aisle_vehicle *vehicle, const piece *p) {
-    const double grow = vehicle->outer_radius + TOUCH + fabs((double)p->to->curvature) * p->length * p->length / 8.0;
+    const double grow =
+        vehicle->outer_radius + TOUCH_BENT + fabs((double)p->to->curvature) * p->length * p->length / 8.0;
     const aisle_aabb ends = {{aisle_min(p->from->x, p->to->x), aisle_min(p->from->y, p->to->y)},
                              {aisle_max(p->from->x, p->to->x), aisle_max(p->from->y, p->to->y)}};
     return aisle_aabb_grow(ends, grow);
@@ -144,13 +146,14 @@ static aisle_aabb box_of(const aisle_vehicle *vehicle, const piece *p) {
 static bool may_touch(const aisle_vehicle *vehicle, const piece *p, const aisle_convex *zone) {
     const double stray = stray_of(vehicle, p);
     const double cuts = cuts_of(vehicle, p, stray);
+    const double touch = stray > 0.0 ? TOUCH_BENT : TOUCH;
     for (double cut = 0.0; cut < cuts; cut += 1.0) {
         aisle_vec2 places[2 * AISLE_SHAPE_VERTICES_MAX], hull[2 * AISLE_SHAPE_VERTICES_MAX];
         (void)aisle_vehicle_place(vehicle, aisle_piece_at(p->from, p->to, cut / cuts), 0.0, places);
         (void)aisle_vehicle_place(vehicle, aisle_piece_at(p->from, p->to, (cut + 1.0) / cuts), 0.0,
                                   places + vehicle->n);
         const uint32_t size = aisle_convex_hull(places, 2U * vehicle->n, hull);
-        const aisle_convex swept = {hull, size, vehicle->radius + stray / (cuts * cuts) + TOUCH};
+        const aisle_convex swept = {hull, size, vehicle->radius + stray / (cuts * cuts) + touch};
         if (!(aisle_convex_gap(&swept, zone) > 0.0)) {
             return true;
         }
@@ -187,7 +190,9 @@ static double piece_limit(const aisle_vehicle *vehicle, const aisle_layout *layo
     if ((double)p->to->clearance < vehicle->creep_clearance) {
         limit = aisle_min(limit, vehicle->creep_speed);
     }
-    return layout == NULL || !aisle_layout_has_speed_limits(layout) ? limit : zone_limit(vehicle, layout, p, limit);
+    return layout == NULL || !aisle_layout_has_kind(layout, AISLE_POLYGON_SPEED_LIMIT)
+               ? limit
+               : zone_limit(vehicle, layout, p, limit);
 }
 
 // Until the last pass s holds the length and a the limit of the piece that ends here, both rounded down.

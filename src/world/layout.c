@@ -87,8 +87,9 @@ aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone 
     return (aisle_convex){&aisle_layout_held(self)->vertices[zone->first], zone->n, 0.0};
 }
 
-bool aisle_layout_has_speed_limits(const aisle_layout *self) {
-    return aisle_layout_held(self)->speed_limits > 0;
+bool aisle_layout_has_kind(const aisle_layout *self, int8_t kind) {
+    AISLE_ASSERT(kind >= 0 && kind < AISLE_LAYOUT_KINDS);
+    return aisle_layout_held(self)->of_kind[kind] > 0U;
 }
 
 bool aisle_layout_has_scan(const aisle_layout *self) {

@@ -170,7 +170,7 @@ aisle_aabb aisle_layout_bounds(const aisle_layout *self); // with a scan: what t
 uint32_t aisle_layout_zone_count(const aisle_layout *self);
 const aisle_zone *aisle_layout_zone(const aisle_layout *self, uint32_t index);
 aisle_convex aisle_layout_zone_shape(const aisle_layout *self, const aisle_zone *zone);
-bool aisle_layout_has_speed_limits(const aisle_layout *self); // zones of kind SPEED_LIMIT
+bool aisle_layout_has_kind(const aisle_layout *self, int8_t kind); // a zone of this AISLE_POLYGON_* kind
 
 // Blocks: the layout as convex things alone. The zones, by index, then the rectangles that cover the scan's cells; not
 // all that are there if has_blocks() is false (AISLE_LAYOUT_RECTS_MAX).

@@ -149,7 +149,7 @@ void aisle_layout_stage_begin(aisle_layout *self, const aisle_layout_header *hea
     store->zone_count = 0;
     store->vertex_count = 0;
     store->zones_content = 0;
-    store->speed_limits = 0;
+    memset(store->of_kind, 0, sizeof store->of_kind);
     staging->stage = AISLE_STAGE_FILLING;
     staging->is_patch = false;
     staging->parts = 0;

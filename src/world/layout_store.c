@@ -71,7 +71,7 @@ void aisle_layout_store_add(aisle_layout_store *self, const aisle_polygon_msg *p
     zone->value = polygon->value;
     zone->direction = polygon->direction;
     zone->box = aisle_convex_aabb(&(aisle_convex){v, zone->n, 0.0});
-    self->speed_limits += zone->kind == AISLE_POLYGON_SPEED_LIMIT ? 1U : 0U;
+    self->of_kind[zone->kind]++;
     self->zones_content += aisle_layout_store_content(self, zone);
 }
 
@@ -96,7 +96,7 @@ void aisle_layout_store_add_zones(aisle_layout_store *self, const aisle_layout_s
     for (uint32_t i = 0; i < count; i++) {
         zones[i].first = self->vertex_count;
         self->vertex_count += zones[i].n;
-        self->speed_limits += zones[i].kind == AISLE_POLYGON_SPEED_LIMIT ? 1U : 0U;
+        self->of_kind[zones[i].kind]++;
         AISLE_ASSERT(self->vertex_count <= self->vertex_capacity);
         if (!is_row) {
             memcpy(&self->vertices[zones[i].first], &from->vertices[old[i].first], zones[i].n * sizeof *self->vertices);

@@ -13,6 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define AISLE_LAYOUT_KINDS 5 // of polygons
+
 typedef struct aisle_zone { // one polygon of the layout
     aisle_aabb box;
     uint32_t first; // of its vertices in the store
@@ -41,7 +43,7 @@ typedef struct aisle_layout_store {
     uint64_t scan_content;  // and of the scan; known when the layout is built
     uint32_t zone_count, zone_capacity;
     uint32_t vertex_count, vertex_capacity;
-    uint32_t speed_limits; // zones of kind SPEED_LIMIT
+    uint32_t of_kind[AISLE_LAYOUT_KINDS]; // zones of each AISLE_POLYGON_* kind
     uint32_t cell_capacity;
 } aisle_layout_store;
 

@@ -266,7 +266,8 @@ static void test_half_a_turn_is_proved_both_ways_round(void) {
     }
 }
 
-static void test_a_keepout_stops_and_other_zones_do_not(void) {
+// Of the speed limit 0.2 m/s is asked, and DIRECTED has direction 0.
+static void test_a_keepout_stops_and_zones_do_not_bar_a_slow_way_along_them(void) {
     for (int8_t kind = AISLE_POLYGON_OBSTACLE; kind <= AISLE_POLYGON_DIRECTED; kind++) {
         vehicle_disc(0.3);
         world_begin(-5.0, -5.0, 5.0, 5.0, 0.25F);
@@ -275,6 +276,8 @@ static void test_a_keepout_stops_and_other_zones_do_not(void) {
         path_begin(-2.0, 0.5, 0.0);
         path_line(4.0);
         path_end();
+        path_retime(0.2);
+        path_seal();
         (void)fault_with_margin(0.1);
         if (kind == AISLE_POLYGON_OBSTACLE || kind == AISLE_POLYGON_KEEPOUT) {
             assert_collision(id, 1);
@@ -524,7 +527,7 @@ int main(void) {
     RUN_TEST(test_a_corner_clipped_during_a_turn_alone_is_found);
     RUN_TEST(test_a_long_footprint_sweeps_with_its_far_end);
     RUN_TEST(test_half_a_turn_is_proved_both_ways_round);
-    RUN_TEST(test_a_keepout_stops_and_other_zones_do_not);
+    RUN_TEST(test_a_keepout_stops_and_zones_do_not_bar_a_slow_way_along_them);
     RUN_TEST(test_the_margin_is_kept_to_each_of_the_four_bounds);
     RUN_TEST(test_a_single_occupied_cell_stops);
     RUN_TEST(test_a_straight_path_may_be_as_close_as_2_micrometres_above_the_margin);

@@ -67,7 +67,9 @@ static void expect_as_fresh(void) {
     if (scene.tiles > 0) {
         expect_same_rects(&fresh.rects, &fix_layout.rects);
     }
-    TEST_ASSERT_EQUAL(aisle_layout_has_speed_limits(&fresh), aisle_layout_has_speed_limits(&fix_layout));
+    for (int8_t kind = 0; kind < AISLE_LAYOUT_KINDS; kind++) {
+        TEST_ASSERT_EQUAL(aisle_layout_has_kind(&fresh, kind), aisle_layout_has_kind(&fix_layout, kind));
+    }
     TEST_ASSERT_EQUAL_HEX64(aisle_layout_content(&fresh), aisle_layout_content(&fix_layout));
     TEST_ASSERT_EQUAL_UINT32(scene.count, aisle_layout_zone_count(&fix_layout));
     for (uint32_t i = 0; i < scene.count; i++) {
