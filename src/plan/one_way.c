@@ -108,7 +108,10 @@ static void take_zones(aisle_one_way *self, aisle_vec2 start) {
 void aisle_one_way_start(aisle_one_way *self, aisle_seed *seed, aisle_space *space, aisle_vec2 start, aisle_vec2 goal,
                          double reach) {
     bool inside;
-    *self = (aisle_one_way){.seed = seed, .space = space, .reach = reach};
+    self->seed = seed;
+    self->space = space;
+    self->reach = reach;
+    self->count = self->floods = 0;
     self->start = aisle_lattice_cell(&space->grid->lattice, start, &inside);
     self->goal = aisle_lattice_cell(&space->grid->lattice, goal, &inside);
     take_zones(self, start);

@@ -111,8 +111,9 @@ aisle_status aisle_route_step_build(aisle_route *self, uint32_t units) {
     st = aisle_compose_step(&self->compose, units, &self->spent);
     if (st == AISLE_OK) {
         begin_verify(self);
-    } else if (st != AISLE_BUSY) {
-        return fall_back(self, AISLE_STATUS_INTERNAL, 0, aisle_route_place(&self->request.start));
+    } else if (st != AISLE_BUSY) { // too long for a path's clock, where limits or zones are that slow
+        int16_t cause = st == AISLE_ERR_CAPACITY ? AISLE_STATUS_LIMIT : AISLE_STATUS_INTERNAL;
+        return fall_back(self, cause, 0, aisle_route_place(&self->request.start));
     }
     return AISLE_BUSY;
 }

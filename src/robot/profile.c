@@ -243,22 +243,35 @@ static double rest_to_rest(double way, double most, double up, double down, doub
     return *peak / up + *peak / down + cruise;
 }
 
+static aisle_piece_work work_of(const aisle_vehicle *vehicle, const piece *p, double peak) {
+    const double v0 = (double)p->from->v, v1 = (double)p->to->v;
+    const double drag = vehicle->mass * GRAVITY * vehicle->rolling_resistance;
+    if (is_turn(p)) {
+        return (aisle_piece_work){.turning = drag * vehicle->outer_radius * fabs(p->turn)};
+    }
+    const double gain = v0 + v1 > 0.0 ? aisle_max(0.0, v1 * v1 - v0 * v0) : peak * peak;
+    return (aisle_piece_work){.rolling = drag * p->length, .acceleration = 0.5 * vehicle->mass * gain};
+}
+
+aisle_piece_work aisle_piece_work_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                                     const aisle_waypoint_msg *to, double peak) {
+    const piece p = {from, to, aisle_piece_length(from, to), aisle_piece_turn(from, to)};
+    return work_of(vehicle, &p, peak);
+}
+
 // Duration of piece p under `limit`; *work: what it takes at the wheels, J.
 static double drive(const aisle_vehicle *vehicle, const piece *p, double limit, double *work) {
     const double v0 = (double)p->from->v, v1 = (double)p->to->v;
-    const double rolling = vehicle->mass * GRAVITY * vehicle->rolling_resistance;
-    double peak;
+    double peak = 0.0, duration;
     if (is_turn(p)) {
-        const double turn = fabs(p->turn);
-        *work = rolling * vehicle->outer_radius * turn;
-        return rest_to_rest(turn, vehicle->omega_max, vehicle->alpha_max, vehicle->alpha_max, &peak);
+        duration = rest_to_rest(fabs(p->turn), vehicle->omega_max, vehicle->alpha_max, vehicle->alpha_max, &peak);
+    } else if (v0 + v1 > 0.0) {
+        duration = 2.0 * p->length / (v0 + v1);
+    } else {
+        duration = rest_to_rest(p->length, limit, vehicle->a_max, vehicle->d_max, &peak);
     }
-    if (v0 + v1 > 0.0) {
-        *work = rolling * p->length + 0.5 * vehicle->mass * aisle_max(0.0, v1 * v1 - v0 * v0);
-        return 2.0 * p->length / (v0 + v1);
-    }
-    const double duration = rest_to_rest(p->length, limit, vehicle->a_max, vehicle->d_max, &peak);
-    *work = rolling * p->length + 0.5 * vehicle->mass * peak * peak;
+    const aisle_piece_work w = work_of(vehicle, p, peak);
+    *work = w.rolling + w.acceleration + w.turning;
     return duration;
 }
 

@@ -72,6 +72,13 @@ aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout
 // the diameter is taken as the diameter. Relative error at most 1e-12. O(1).
 double aisle_piece_length(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to);
 
+// What a piece takes at the wheels, J, by the rules above; peak: m/s, of a piece at rest at both ends. O(1).
+typedef struct aisle_piece_work {
+    double rolling, acceleration, turning;
+} aisle_piece_work;
+aisle_piece_work aisle_piece_work_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                                     const aisle_waypoint_msg *to, double peak);
+
 // Signed turn (rad) of theta, the short way, in (-pi, pi]. O(1).
 double aisle_piece_turn(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to);
 #endif

@@ -199,6 +199,22 @@ static void test_zones_that_contradict_each_other_shut_the_aisle(void) {
     refused_with(AISLE_STATUS_NO_PATH, east);
 }
 
+// The corners of a way round a zone are arcs that stay out of it, not stops.
+static void test_a_zones_corners_are_rounded_outside_of_it(void) {
+    hall_begin(20.0, 8.0);
+    (void)directed(0.0, 7.0, -1.0, 13.0, 5.0);
+    open_hall();
+    plan(18.0, 1.5, 2.0, 1.5);
+    take_answer();
+    int arcs = 0;
+    for (int16_t i = 1; i < answer.num_waypoints; i++) {
+        TEST_ASSERT_EQUAL_INT16(0,
+                                answer.waypoints[i - 1].flags & (AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE));
+        arcs += fabs((double)answer.waypoints[i].curvature) > 0.0 ? 1 : 0;
+    }
+    TEST_ASSERT_GREATER_THAN(1, arcs);
+}
+
 static void test_a_wall_stays_the_cause_where_zones_are_not(void) {
     hall_begin(20.0, 3.0);
     hall_add(4.0, 0.0, 4.5, 3.0);
@@ -338,6 +354,7 @@ int main(void) {
     RUN_TEST(test_the_zone_is_named_for_long_bodies_too);
     RUN_TEST(test_one_way_aisles_that_lead_to_each_other_are_both_the_cause_and_the_first_is_named);
     RUN_TEST(test_zones_that_contradict_each_other_shut_the_aisle);
+    RUN_TEST(test_a_zones_corners_are_rounded_outside_of_it);
     RUN_TEST(test_a_wall_stays_the_cause_where_zones_are_not);
     RUN_TEST(test_a_start_or_goal_inside_leaves_or_comes_by_the_direction);
     RUN_TEST(test_random_halls_are_obeyed_for_every_seed);

@@ -139,6 +139,18 @@ static void test_arcs_allowed_are_so_at_every_sample_and_few_others_are_refused_
     TEST_ASSERT_LESS_THAN(SEEDS / 20, hard);
 }
 
+static void test_the_end_of_a_tight_arc_counts_and_not_its_chord_alone(void) {
+    add_box(AISLE_POLYGON_DIRECTED, 0.0F, 0.0, 4.0, 4.0, 8.0, 6.0);
+    build();
+    aisle_waypoint_msg w[2];
+    arc(5.0, 5.0, 1.2, 20.0, 0.04, w); // from 69 to 115 degrees, its chord at 92
+    TEST_ASSERT_FALSE(aisle_zones_allow_piece(&hall_layout, &w[0], &w[1], NULL));
+    arc(5.0, 5.0, 1.0, 20.0, 0.04, w); // to 103, its chord at 80
+    TEST_ASSERT_FALSE(aisle_zones_allow_piece(&hall_layout, &w[0], &w[1], NULL));
+    arc(5.0, 5.0, 0.2, 20.0, 0.04, w); // to 57
+    TEST_ASSERT_TRUE(aisle_zones_allow_piece(&hall_layout, &w[0], &w[1], NULL));
+}
+
 static void test_a_turn_on_the_spot_is_no_way(void) {
     add_box(AISLE_POLYGON_DIRECTED, 0.0F, 0.0, 4.0, 4.0, 8.0, 6.0);
     build();
@@ -213,6 +225,7 @@ int main(void) {
     RUN_TEST(test_a_way_is_allowed_up_to_a_right_angle_and_a_milliradian);
     RUN_TEST(test_only_what_is_inside_counts_and_room_makes_it_wider);
     RUN_TEST(test_arcs_allowed_are_so_at_every_sample_and_few_others_are_refused_for_every_seed);
+    RUN_TEST(test_the_end_of_a_tight_arc_counts_and_not_its_chord_alone);
     RUN_TEST(test_a_turn_on_the_spot_is_no_way);
     RUN_TEST(test_penalties_cost_their_value_by_length_and_add_up_for_every_objective);
     RUN_TEST(test_a_pieces_toll_is_the_integral_along_the_arc_for_every_seed);

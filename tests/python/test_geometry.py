@@ -69,11 +69,15 @@ def test_wrap():
 
 
 # ---- the checker
+DRAG = 500 * 9.80665 * 0.015 / 0.8  # N at the battery, of the default vehicle
+
+
 def good_path(y=0.0):
     """4 m along x: to 1 m/s and back to rest, 0.5 m/s2."""
     path = path_t()
     path.waypoints = [wp(0, y), wp(1, y, v=1, t=2, s=1), wp(3, y, v=1, t=4, s=3), wp(4, y, t=6, s=4)]
     path.num_waypoints, path.length, path.duration, path.length_bound = 4, 4.0, 6.0, 4.0
+    path.energy = 4 * DRAG + 0.5 * 500 / 0.8 + 50 * 6.0
     return path
 
 
@@ -145,6 +149,7 @@ def test_rotated_footprint_touches_with_its_corner():
     path.waypoints = [wp(0, 0, flags=waypoint_t.TURN_IN_PLACE), wp(0, 0, math.pi / 2, t=10)]
     path.num_waypoints, path.duration = 2, 10.0
     corner = math.hypot(0.5, 0.3)
+    path.energy = DRAG * corner * math.pi / 2 + 50 * 10
     report = check_path(path, hall(wall(corner + 0.2)), BOX)
     assert report.clearance == pytest.approx(0.2, abs=1e-5) and report.ok
 
@@ -159,6 +164,7 @@ def test_rotated_footprint_touches_with_its_corner():
         (lambda p: setattr(p.waypoints[1], "theta", 0.1), "heading"),
         (lambda p: setattr(p, "length", 4.1), "length 4.1"),
         (lambda p: setattr(p, "duration", 5.0), "duration"),
+        (lambda p: setattr(p, "energy", p.energy * 1.002), "energy"),
         (lambda p: setattr(p, "length_bound", 4.1), "length_bound"),
         (lambda p: setattr(p, "clearance_min", 0.9), "clearance_min"),
         (lambda p: setattr(p.waypoints[2], "clearance", 0.9), "waypoint 2: clearance"),

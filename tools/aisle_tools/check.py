@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
-from aisle import goal_list_t, path_t, query_t, waypoint_t
+from aisle import goal_list_t, path_t, polygon_t, query_t, waypoint_t
 
 from aisle_tools import geometry
 from aisle_tools.vehicle import Body
-from aisle_tools.world import Grid, World
+from aisle_tools.world import Grid, Polygon, World
 
 OMNI = 2
 LENGTH_TOLERANCE = 1e-4  # relative: the sum travels as float
@@ -23,6 +23,25 @@ LIMIT_TOLERANCE = 2e-3  # relative, of speeds and accelerations
 HEADING_TOLERANCE = 5e-3  # rad, between heading and motion
 CLEARANCE_TOLERANCE = 1e-4  # m, a claimed clearance over the sampled one
 CONTACT_TOLERANCE = 1e-6  # m, of the margin
+ENERGY_TOLERANCE = 1e-3  # relative: the peak of a piece from rest to rest is told by its time as float alone
+AGAINST_TOLERANCE = 2.5e-3  # rad, of a motion beyond a right angle to a directed zone
+ZONE_TOLERANCE = 1e-5  # m, deeper in a zone than this is inside
+REST = 1e-6  # m/s
+GRAVITY = 9.80665  # m/s2
+
+
+@dataclass
+class Energy:
+    """J from the battery."""
+
+    rolling: float = 0.0
+    acceleration: float = 0.0
+    turning: float = 0.0
+    idle: float = 0.0
+
+    @property
+    def total(self) -> float:
+        return self.rolling + self.acceleration + self.turning + self.idle
 
 
 @dataclass
@@ -35,6 +54,7 @@ class Report:
     heading_error: float = 0.0
     samples: int = 0
     piece_clearance: list[float] = field(default_factory=list)
+    energy: list[Energy] = field(default_factory=list)  # of the piece that ends at each waypoint but the first
     faults: list[str] = field(default_factory=list)
 
     @property
@@ -124,6 +144,8 @@ def check_path(path: path_t, obstacles: Obstacles, body: Body, query: query_t | 
     _check_sums(path, report)
     _check_motion(path, body, report)
     _check_limits(path, body, report)
+    _check_zones(path, obstacles.world, body, samples, report)
+    _check_energy(path, body, query, report)
     if query is not None:
         _check_ends(path, query, report)
     return report
@@ -243,6 +265,84 @@ def _piece_fault(a: waypoint_t, b: waypoint_t, p: geometry.Piece, body: Body) ->
         if value > most * (1.0 + LIMIT_TOLERANCE):
             return f"{name} {value:.4f} above {most:.4f}"
     return ""
+
+
+def _depth(vertices: np.ndarray, x: float, y: float) -> float:
+    """m inside a convex counter-clockwise polygon; below 0 outside."""
+    a, e = vertices, np.roll(vertices, -1, axis=0) - vertices
+    return float(((e[:, 0] * (y - a[:, 1]) - e[:, 1] * (x - a[:, 0])) / np.hypot(e[:, 0], e[:, 1])).min())
+
+
+def _check_zones(path: path_t, world: World, body: Body, samples: list[geometry.Sample], report: Report) -> None:
+    """SPEED_LIMIT zones by the footprint, DIRECTED ones by the origin's motion."""
+    zones = [p for p in world.polygons if p.kind in (polygon_t.SPEED_LIMIT, polygon_t.DIRECTED)]
+    if not zones or len(path.waypoints) < 2:
+        return
+    pieces = geometry.pieces(path.waypoints)
+    for zone in zones:
+        text = _speed_fault(path, zone, body, samples) if zone.kind == polygon_t.SPEED_LIMIT else _way_fault(zone, pieces, samples)
+        if text:
+            report.faults.append(f"zone {zone.ident}: {text}")
+
+
+def _way_fault(zone: Polygon, pieces: list[geometry.Piece], samples: list[geometry.Sample]) -> str:
+    for s in samples:
+        p = pieces[s.index]
+        off = abs(geometry.wrap(p.heading_at(s.fraction) - zone.direction))
+        against = p.length > 1e-9 and off > 0.5 * math.pi + AGAINST_TOLERANCE
+        if against and _depth(zone.vertices, s.x, s.y) > ZONE_TOLERANCE:
+            return f"driven against its direction at ({s.x:.3f}, {s.y:.3f})"
+    return ""
+
+
+def _speed_fault(path: path_t, zone: Polygon, body: Body, samples: list[geometry.Sample]) -> str:
+    shape = shapely.buffer(shapely.polygons(zone.vertices), -ZONE_TOLERANCE)
+    poses = np.array([(s.x, s.y, s.theta) for s in samples])
+    bodies = shapely.points(poses[:, :2]) if body.is_disc else shapely.polygons(placed(body, poses))
+    gaps = shapely.distance(bodies, shape) - body.radius
+    for s, gap in zip(samples, gaps):
+        v0, v1 = path.waypoints[s.index].v, path.waypoints[s.index + 1].v
+        v = math.sqrt(max(0.0, v0 * v0 + s.fraction * (v1 * v1 - v0 * v0)))
+        if gap <= 0.0 and v > zone.value * (1.0 + LIMIT_TOLERANCE):
+            return f"{v:.3f} m/s at ({s.x:.3f}, {s.y:.3f}), its limit is {zone.value:.3f} m/s"
+    return ""
+
+
+def piece_energy(a: waypoint_t, b: waypoint_t, body: Body, dwell: float = 0.0) -> Energy:
+    """What the piece from a to b takes; `dwell` s of its time the vehicle stands at a."""
+    lim, p = body.limits, geometry.piece(a, b)
+    drag = lim["mass"] * GRAVITY * lim["rolling_resistance"] / lim["drive_efficiency"]
+    out = Energy(idle=lim["idle_power"] * (b.t - a.t))
+    if a.flags & waypoint_t.TURN_IN_PLACE:
+        out.turning = drag * body.outer_radius * abs(p.turn)
+        return out
+    gain = max(0.0, b.v * b.v - a.v * a.v)
+    if max(a.v, b.v) <= REST:  # the peak of the trapezoid that takes the time
+        q = 0.5 / lim["a_max"] + 0.5 / lim["d_max"]
+        time = max(b.t - a.t - dwell, 1e-9)
+        gain = (2.0 * p.length / (time + math.sqrt(max(0.0, time * time - 4.0 * q * p.length)))) ** 2
+    out.rolling = drag * p.length
+    out.acceleration = 0.5 * lim["mass"] * gain / lim["drive_efficiency"]
+    return out
+
+
+def energies(path: path_t, body: Body, query: query_t | None = None) -> list[Energy]:
+    """Of the piece that ends at each waypoint but the first."""
+    dwells = {g.id: g.dwell for g in query.goals} if query is not None else {}
+    out = []
+    for a, b in zip(path.waypoints, path.waypoints[1:]):
+        dwell = dwells.get(a.goal_id, 0.0) if a.flags & waypoint_t.GOAL else 0.0
+        out.append(piece_energy(a, b, body, max(dwell, 0.0)))
+    return out
+
+
+def _check_energy(path: path_t, body: Body, query: query_t | None, report: Report) -> None:
+    report.energy = energies(path, body, query)
+    total = sum(e.total for e in report.energy)
+    if query is None and any(w.flags & waypoint_t.GOAL for w in path.waypoints[:-1]):
+        return  # how long it stands on the way is not known
+    if abs(total - path.energy) > ENERGY_TOLERANCE * max(1.0, total):
+        report.faults.append(f"energy {path.energy:.1f} J claimed, {total:.1f} J found")
 
 
 def turn_time(angle: float, omega: float, alpha: float) -> float:

@@ -32,9 +32,13 @@ DEFAULTS = {
     "creep_speed": 0.3,
     "pose_timeout": 0.2,
     "obstacles_timeout": 0.3,
+    "mass": 500.0,
+    "rolling_resistance": 0.015,
+    "idle_power": 50.0,
+    "drive_efficiency": 0.8,
 }
 DEFAULT_FOOTPRINT = ((-0.5, -0.35), (0.5, -0.35), (0.5, 0.35), (-0.5, 0.35))
-NUMBERS = (*DEFAULTS, "footprint_radius", "curvature_max", "mass", "rolling_resistance", "idle_power", "drive_efficiency")
+NUMBERS = (*DEFAULTS, "footprint_radius", "curvature_max")
 KEYS = (*NUMBERS, "drive", "footprint", "vehicle_revision")
 ALIASES = {"radius": "footprint_radius"}
 
@@ -53,6 +57,11 @@ class Body:
     @property
     def is_disc(self) -> bool:
         return len(self.vertices) == 0
+
+    @property
+    def outer_radius(self) -> float:
+        """m, of the least disc about the origin around the footprint."""
+        return self.radius + max((math.hypot(x, y) for x, y in self.vertices), default=0.0)
 
 
 def body(msg: vehicle_t) -> Body:
