@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <iostream>
 #include <limits>
@@ -183,6 +184,8 @@ static void set_up(og::SimpleSetup &setup, const Scene &s) {
     a->setYaw(s.start[2]);
     b->setXY(s.goal[0], s.goal[1]);
     b->setYaw(s.goal[2]);
+    a.enforceBounds();
+    b.enforceBounds();
     setup.setStartAndGoalStates(a, b);
     setup.setOptimizationObjective(std::make_shared<ob::PathLengthOptimizationObjective>(si));
     if (s.planner == "RRTConnect") {
@@ -191,6 +194,11 @@ static void set_up(og::SimpleSetup &setup, const Scene &s) {
         setup.setPlanner(std::make_shared<og::BITstar>(si));
     }
     setup.setup();
+    if (!si->isValid(a.get()) || !si->isValid(b.get()) || !a.satisfiesBounds() ||
+        !b.satisfiesBounds()) { // it would wait for better ones without end
+        std::fprintf(stderr, "an end is not free\n");
+        std::exit(1);
+    }
 }
 
 int main() {
@@ -204,9 +212,11 @@ int main() {
     const double began = seconds();
     for (double end = began + s.cap; seconds() < end;) {
         const double slice = last_poses.empty() ? end : std::min(end, seconds() + 0.1);
-        const bool one = first_poses.empty() || s.planner == "RRTConnect"; // then it is content with the first it finds
-        auto exact = ob::exactSolnPlannerTerminationCondition(setup.getProblemDefinition());
-        setup.solve(ob::PlannerTerminationCondition([&] { return seconds() >= slice || (one && exact()); }));
+        const bool one = first_poses.empty();
+        if (auto *bit = setup.getPlanner()->as<og::BITstar>(); s.planner != "RRTConnect") {
+            bit->setStopOnSolnImprovement(one);
+        }
+        setup.solve(ob::PlannerTerminationCondition([&] { return seconds() >= slice; }));
         if (setup.haveExactSolutionPath()) {
             og::PathGeometric path(setup.getSolutionPath());
             og::PathSimplifier(setup.getSpaceInformation()).simplifyMax(path);
