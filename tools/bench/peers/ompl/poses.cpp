@@ -219,7 +219,8 @@ int main() {
         setup.solve(ob::PlannerTerminationCondition([&] { return seconds() >= slice; }));
         if (setup.haveExactSolutionPath()) {
             og::PathGeometric path(setup.getSolutionPath());
-            og::PathSimplifier(setup.getSpaceInformation()).simplifyMax(path);
+            og::PathSimplifier(setup.getSpaceInformation())
+                .simplify(path, ob::PlannerTerminationCondition([&] { return seconds() >= end; }), false);
             const double now = seconds();
             double length = 0.0;
             const std::vector<double> poses = poses_of(path, length);
