@@ -17,6 +17,7 @@
 #define SHIFT_LAST 0.004 // m
 #define SETTLED 2e-4     // of the cost, where it is not the length: a pass that gains less is the last
 #define POINT_MOVES_UNITS 8U
+#define MERGE 0.05 // m, see merge_near()
 
 void aisle_taut_start(aisle_taut *self, const aisle_space *space, const aisle_objective *objective, double arc_radius,
                       aisle_vec2 *points, uint32_t count, uint32_t capacity) {
@@ -327,6 +328,40 @@ static void improve_point(aisle_taut *self, uint32_t i) {
     self->at++;
 }
 
+// Where the lines a-b and d-c meet. False: nowhere near b.
+static bool meeting_of(const aisle_vec2 *p, aisle_vec2 *out) {
+    const aisle_vec2 u = aisle_vec2_sub(p[1], p[0]);
+    const aisle_vec2 v = aisle_vec2_sub(p[2], p[3]);
+    const double turn = aisle_vec2_cross(u, v);
+    if (fabs(turn) < 1e-3 * aisle_vec2_length(u) * aisle_vec2_length(v)) {
+        return false;
+    }
+    *out = aisle_vec2_add(p[0], aisle_vec2_scale(u, aisle_vec2_cross(aisle_vec2_sub(p[3], p[0]), v) / turn));
+    return aisle_vec2_distance(*out, p[1]) <= MERGE;
+}
+
+// Slides end half a millimetre before a sharp corner, from either side: of two points there, too near to each other for
+// arcs, one is made where their legs meet, if that is free.
+static void merge_near(aisle_taut *self) {
+    for (uint32_t i = 1; i + 2U < self->count; i++) {
+        aisle_vec2 *p = &self->points[i - 1U];
+        aisle_vec2 at;
+        if (aisle_vec2_distance(p[1], p[2]) <= MERGE && meeting_of(p, &at) && may_turn(self, at) &&
+            free_between(self, p[0], at) && free_between(self, at, p[3])) {
+            p[1] = at;
+            delete_point(self, i + 1U);
+        }
+    }
+}
+
+static aisle_status end(aisle_taut *self) {
+    if (aisle_zones_any_directed(
+            self->space->layout)) { // round obstacles a corner is an arc's, and two points are right
+        merge_near(self);
+    }
+    return AISLE_OK;
+}
+
 // A pass has ended: another one, by exact gaps at last, or the end.
 static aisle_status next_pass(aisle_taut *self) {
     double cost = span_cost(self, 0, self->count - 1U);
@@ -340,7 +375,7 @@ static aisle_status next_pass(aisle_taut *self) {
         return AISLE_BUSY;
     }
     if (self->exact || aisle_objective_is_length(self->objective) || self->count <= 2U) {
-        return AISLE_OK;
+        return end(self);
     }
     self->exact = true;
     memset(self->known, 0, sizeof self->known); // by the field

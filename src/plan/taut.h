@@ -9,6 +9,7 @@
 // obstacle, which is the local optimum there. For other densities slides by 1/2, 1/4, 1/8 of the leg. Ends when a whole
 // pass gains less than AISLE_TAUT_GAIN of the length (2e-4 of another cost), or after AISLE_TAUT_PASSES; then, for other densities, shifts once
 // more by exact gaps, since the field tells the middle of an aisle to half a cell only.
+// Where the layout has DIRECTED zones, whose corners are sharp, two points that ended within 5 cm become one if that is free.
 // Memory: the caller's points, and 5 KiB of costs of legs, each asked for several times. Time: a pass is O(points *
 // sweeps); sliced by point.
 #ifndef AISLE_PLAN_TAUT_H

@@ -204,15 +204,18 @@ static void test_a_zones_corners_are_rounded_outside_of_it(void) {
     hall_begin(20.0, 8.0);
     (void)directed(0.0, 7.0, -1.0, 13.0, 5.0);
     open_hall();
-    plan(18.0, 1.5, 2.0, 1.5);
-    take_answer();
-    int arcs = 0;
-    for (int16_t i = 1; i < answer.num_waypoints; i++) {
-        TEST_ASSERT_EQUAL_INT16(0,
-                                answer.waypoints[i - 1].flags & (AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE));
-        arcs += fabs((double)answer.waypoints[i].curvature) > 0.0 ? 1 : 0;
+    for (int tricycle = 0; tricycle < 2; tricycle++) {
+        hall_vehicle.curvature_max = tricycle == 1 ? 4.0 : 0.0;
+        plan(13.6, 1.0, 6.4, 1.0); // right angles, or nearly
+        take_answer();
+        int arcs = 0;
+        for (int16_t i = 1; i < answer.num_waypoints; i++) {
+            TEST_ASSERT_EQUAL_INT16(0, answer.waypoints[i - 1].flags &
+                                           (AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE));
+            arcs += fabs((double)answer.waypoints[i].curvature) > 0.0 ? 1 : 0;
+        }
+        TEST_ASSERT_GREATER_THAN(1, arcs);
     }
-    TEST_ASSERT_GREATER_THAN(1, arcs);
 }
 
 static void test_a_wall_stays_the_cause_where_zones_are_not(void) {
