@@ -2,7 +2,7 @@
 
 #include "hall.h"
 
-enum { SEEDS = 100 };
+enum { SEEDS = 200 };
 
 static aisle_layout_msg layout;
 static aisle_seed seed;
@@ -154,7 +154,9 @@ static void test_what_is_shut_has_no_way_among_random_polylines_for_every_seed(v
         open_zones();
         for (int i = 0; i < 3; i++) {
             double x = uniform(&rng, 1.5, 5.0), y = uniform(&rng, -0.5, 1.5);
-            add(uniform(&rng, -3.1, 3.1), x, y, x + uniform(&rng, 0.8, 2.0), y + uniform(&rng, 2.0, 4.0));
+            aisle_vec2 size = uniform_point(&rng, aisle_vec2_of(0.8, 2.0), aisle_vec2_of(2.0, 4.0));
+            double direction = uniform(&rng, -3.1, 3.1);
+            add(direction, x, y, x + size.x, y + size.y);
         }
         build();
         bool is_shut = shut(7.3, 2.0, 0.7, 2.0), way = false;

@@ -156,7 +156,8 @@ static void random_zone(float direction) {
 
 static void random_arcs(void) {
     double heading = uniform(-3.1, 3.1);
-    path_begin(-2.5 * cos(heading) + uniform(-1.5, 1.5), -2.5 * sin(heading) + uniform(-1.5, 1.5), heading);
+    double aside = uniform(-1.5, 1.5), ahead = uniform(-1.5, 1.5);
+    path_begin(-2.5 * cos(heading) + aside, -2.5 * sin(heading) + ahead, heading);
     pen_flags = below(4) == 0 ? AISLE_WAYPOINT_REVERSE : 0;
     for (int i = 0; i < 3; i++) {
         double k = (below(2) == 0 ? 1.0 : -1.0) * uniform(0.1, 1.5);
