@@ -18,6 +18,7 @@
 
 #define HALL_UNUSED __attribute__((unused)) static
 #define HALL_BOXES_MAX 64
+#define HALL_ONE_WAYS_MAX 8
 #define HALL_BLOCK (32U << 20)
 
 typedef struct hall_box {
@@ -26,6 +27,9 @@ typedef struct hall_box {
 
 static hall_box hall_boxes[HALL_BOXES_MAX];
 static int hall_count;
+static hall_box hall_one_ways[HALL_ONE_WAYS_MAX]; // DIRECTED zones, behind the boxes in the message
+static double hall_directions[HALL_ONE_WAYS_MAX];
+static int hall_one_way_count;
 static double hall_width, hall_height;
 static aisle_layout hall_layout;
 static aisle_layout_msg hall_msg;
@@ -42,7 +46,7 @@ HALL_UNUSED aisle_arena hall_arena(size_t bytes) {
 }
 
 HALL_UNUSED void hall_begin(double width, double height) {
-    hall_count = 0;
+    hall_count = hall_one_way_count = 0;
     hall_width = width;
     hall_height = height;
 }
@@ -50,6 +54,12 @@ HALL_UNUSED void hall_begin(double width, double height) {
 HALL_UNUSED void hall_add(double x0, double y0, double x1, double y1) {
     TEST_ASSERT_LESS_THAN(HALL_BOXES_MAX, hall_count);
     hall_boxes[hall_count++] = (hall_box){x0, y0, x1, y1};
+}
+
+HALL_UNUSED void hall_one_way(double direction, double x0, double y0, double x1, double y1) {
+    TEST_ASSERT_LESS_THAN(HALL_ONE_WAYS_MAX, hall_one_way_count);
+    hall_directions[hall_one_way_count] = direction;
+    hall_one_ways[hall_one_way_count++] = (hall_box){x0, y0, x1, y1};
 }
 
 // The hall as a message: box i has id i + 1.
@@ -171,6 +181,19 @@ HALL_UNUSED double hall_body_gap(aisle_pose2 pose) {
     return least - v->radius;
 }
 
+// Does a short step of the origin from a to b obey the zones, by its middle?
+HALL_UNUSED bool hall_step_obeys(double ax, double ay, double bx, double by) {
+    const double x = 0.5 * (ax + bx), y = 0.5 * (ay + by), step = hypot(bx - ax, by - ay);
+    for (int i = 0; i < hall_one_way_count; i++) {
+        const hall_box *z = &hall_one_ways[i];
+        const double along = (bx - ax) * cos(hall_directions[i]) + (by - ay) * sin(hall_directions[i]);
+        if (x > z->x0 && x < z->x1 && y > z->y0 && y < z->y1 && along < -2e-3 * step) {
+            return false;
+        }
+    }
+    return true;
+}
+
 HALL_UNUSED const aisle_layout_msg *hall_message(int32_t revision, float resolution) {
     memset(&hall_msg, 0, sizeof hall_msg);
     hall_msg.map_id = 1;
@@ -179,16 +202,20 @@ HALL_UNUSED const aisle_layout_msg *hall_message(int32_t revision, float resolut
     hall_msg.x_max = hall_width;
     hall_msg.y_max = hall_height;
     hall_msg.resolution = resolution;
-    hall_msg.num_polygons = (int16_t)hall_count;
-    hall_msg.total_polygons = hall_count;
+    hall_msg.num_polygons = (int16_t)(hall_count + hall_one_way_count);
+    hall_msg.total_polygons = hall_msg.num_polygons;
     uint32_t crc = 0;
-    for (int i = 0; i < hall_count; i++) {
-        const hall_box *b = &hall_boxes[i];
+    for (int i = 0; i < hall_msg.num_polygons; i++) {
+        const hall_box *b = i < hall_count ? &hall_boxes[i] : &hall_one_ways[i - hall_count];
         const double v[4][2] = {{b->x0, b->y0}, {b->x1, b->y0}, {b->x1, b->y1}, {b->x0, b->y1}};
         aisle_polygon_msg *polygon = &hall_msg.polygons[i];
         polygon->id = i + 1;
         polygon->num_vertices = 4;
         memcpy(polygon->vertices, v, sizeof v);
+        if (i >= hall_count) {
+            polygon->kind = AISLE_POLYGON_DIRECTED;
+            polygon->direction = (float)hall_directions[i - hall_count];
+        }
         uint8_t bytes[512];
         size_t size = 0;
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_encode_body(AISLE_MSG_POLYGON, polygon, bytes, sizeof bytes, &size));

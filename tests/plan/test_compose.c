@@ -124,6 +124,35 @@ static void test_corners_of_a_seed_become_arcs_that_keep_the_margin(void) {
     TEST_ASSERT_TRUE(path.length > 28.0F && path.length < 30.0F);
 }
 
+static bool path_obeys(void) {
+    for (int16_t i = 1; i < path.num_waypoints; i++) {
+        const door_piece piece = door_piece_of(&path.waypoints[i - 1], &path.waypoints[i]);
+        for (int k = 0; k < 200; k++) {
+            const aisle_pose2 a = door_piece_at(&piece, k / 200.0), b = door_piece_at(&piece, (k + 1) / 200.0);
+            if (piece.length > 0.0 && !hall_step_obeys(a.x, a.y, b.x, b.y)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// Inside the corner, off both legs.
+static void test_arcs_shrink_where_wide_ones_would_be_against_a_zone(void) {
+    const aisle_vec2 bend[] = {{2.0, 2.0}, {2.0, 10.0}, {12.0, 10.0}};
+    for (int against = 0; against < 2; against++) {
+        double most;
+        setUp();
+        hall_one_way(against != 0 ? -2.0 : 0.8, 2.05, 8.0, 4.0, 9.95);
+        open_hall();
+        leg(bend, 3);
+        build_well();
+        TEST_ASSERT_TRUE(path_obeys());
+        TEST_ASSERT_EQUAL_INT(1, arcs(&most) > 0);
+        TEST_ASSERT_TRUE(against != 0 ? most > 1.0 / 0.2 && most < 1.0 / 0.05 : most <= 1.0 + 1e-6);
+    }
+}
+
 static void test_arcs_shrink_where_wide_ones_do_not_fit(void) {
     aisle_vec2 tight[] = {{6.5, 2.0}, {6.5, 7.5}, {12.0, 7.5}}; // a metre wide they would graze the box's corner
     double most;
@@ -377,6 +406,7 @@ static void test_a_free_heading_is_one_of_pi_or_more(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_corners_of_a_seed_become_arcs_that_keep_the_margin);
+    RUN_TEST(test_arcs_shrink_where_wide_ones_would_be_against_a_zone);
     RUN_TEST(test_arcs_shrink_where_wide_ones_do_not_fit);
     RUN_TEST(test_stops_turn_on_the_spot_in_every_corner);
     RUN_TEST(test_a_negative_zone_means_stops_and_a_positive_one_where_arcs_may_begin);

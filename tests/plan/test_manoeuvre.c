@@ -98,8 +98,12 @@ static void judge_piece(const aisle_waypoint_msg *a, const aisle_waypoint_msg *b
         TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.0, wrapped(course - middle - back));
     }
     double steps = ceil((1.1 * travel + 2.0 * turn) / 0.005) + 1.0;
+    aisle_pose2 before = place_on(a, b, 0.0L);
     for (double i = 0.0; i <= steps; i += 1.0) {
-        TEST_ASSERT_TRUE(hall_body_gap(place_on(a, b, (long double)(i / steps))) >= MARGIN);
+        aisle_pose2 at = place_on(a, b, (long double)(i / steps));
+        TEST_ASSERT_TRUE(hall_body_gap(at) >= MARGIN);
+        TEST_ASSERT_TRUE(on_spot || hall_step_obeys(before.x, before.y, at.x, at.y));
+        before = at;
     }
 }
 
@@ -193,6 +197,28 @@ static void test_in_the_open_it_is_about_as_short_as_its_ends_allow(void) {
     }
 }
 
+// One-way aisles: out of one by its end and into another by its beginning, forwards or backwards, what is made from the
+// goal included.
+static void test_directed_zones_are_obeyed_by_every_drive(void) {
+    static const double aisles[3] = {1.3, 1.7, 2.6};
+    int found = 0;
+    for (int k = 0; k < 16; k++) {
+        const double aisle = aisles[k % 3], out = k % 2 == 0 ? 0.5 * PI : -0.5 * PI, in = k % 4 < 2 ? out : -out;
+        forklift(k < 8 ? 0.0F : 0.6666F);
+        rack_hall(aisle);
+        hall_one_way(out, hall_boxes[0].x1, 4.5, hall_boxes[1].x0, 9.5);
+        hall_one_way(in, hall_boxes[2].x1, 4.5, hall_boxes[3].x0, 9.5);
+        open_hall();
+        aisle_manoeuvre_request request =
+            request_of(in_aisle(0, aisle, 7.0, 0.5 * PI), in_aisle(2, aisle, 7.0, k % 8 < 4 ? 0.5 * PI : -0.5 * PI));
+        if (search(&request, 1000) == AISLE_OK) {
+            judge(&request);
+            found++;
+        }
+    }
+    TEST_ASSERT_EQUAL(16, found);
+}
+
 static void test_where_there_is_none_it_says_so_within_its_units(void) {
     hall_begin(12.0, 8.0);
     hall_add(0.0, 0.0, 5.0, 3.45); // aisles of 1.15 m with a right angle
@@ -233,6 +259,7 @@ int main(void) {
     RUN_TEST(test_from_aisle_to_aisle_by_every_heading_and_drive);
     RUN_TEST(test_out_of_a_dead_end_it_goes_backwards_and_only_there);
     RUN_TEST(test_in_the_open_it_is_about_as_short_as_its_ends_allow);
+    RUN_TEST(test_directed_zones_are_obeyed_by_every_drive);
     RUN_TEST(test_where_there_is_none_it_says_so_within_its_units);
     RUN_TEST(test_slices_change_nothing);
     RUN_TEST(test_waypoints_that_do_not_fit_are_none);

@@ -123,6 +123,36 @@ static void test_a_zone_of_less_than_three_cells_shuts_nothing(void) {
     TEST_ASSERT_FALSE(shut(18.0, 1.5, 2.0, 1.5));
 }
 
+// A box in a frame at `at`, turned by `angle`.
+static void add_turned(int8_t kind, double direction, aisle_vec2 at, double angle, aisle_aabb box) {
+    const double c = cos(angle), s = sin(angle);
+    const double x[4] = {box.lo.x, box.hi.x, box.hi.x, box.lo.x}, y[4] = {box.lo.y, box.lo.y, box.hi.y, box.hi.y};
+    add(direction, 0.0, 0.0, 0.0, 0.0);
+    aisle_polygon_msg *p = &layout.polygons[layout.num_polygons - 1];
+    p->kind = kind;
+    for (int i = 0; i < 4; i++) {
+        p->vertices[i][0] = at.x + c * x[i] - s * y[i];
+        p->vertices[i][1] = at.y + s * x[i] + c * y[i];
+    }
+}
+
+// A corridor with 2 mm to spare, oblique to the grid, across a zone: nothing is lost on the way, whatever cells it meets.
+static void test_ways_at_a_right_angle_to_a_zone_are_not_shut_and_those_against_it_are(void) {
+    const aisle_vec2 at = {2.0, 4.0};
+    for (double angle = 0.05; angle < 0.65; angle += 0.043) {
+        for (int against = 0; against < 2; against++) {
+            const double direction = against != 0 ? angle + 0.5 * PI + 0.1 : angle + 0.5 * PI - 1e-5;
+            begin(20.0, 20.0);
+            open_zones();
+            add_turned(AISLE_POLYGON_OBSTACLE, 0.0, at, angle, (aisle_aabb){{2.0, 0.501}, {14.0, 30.0}});
+            add_turned(AISLE_POLYGON_OBSTACLE, 0.0, at, angle, (aisle_aabb){{2.0, -30.0}, {14.0, -0.501}});
+            add_turned(AISLE_POLYGON_DIRECTED, direction, at, angle, (aisle_aabb){{4.0, -2.0}, {12.0, 2.0}});
+            build();
+            TEST_ASSERT_EQUAL_INT(against, shut(at.x, at.y, at.x + 16.0 * cos(angle), at.y + 16.0 * sin(angle)));
+        }
+    }
+}
+
 // Where a polyline of random points obeys every zone, nothing is shut: the proof is never wrong about it.
 static bool obeys(const aisle_vec2 *p, int n) {
     for (int i = 0; i + 1 < n; i++) {
@@ -192,6 +222,7 @@ int main(void) {
     RUN_TEST(test_a_way_beside_a_zone_is_no_proof);
     RUN_TEST(test_a_way_that_comes_in_lower_by_another_zone_is_found);
     RUN_TEST(test_a_zone_of_less_than_three_cells_shuts_nothing);
+    RUN_TEST(test_ways_at_a_right_angle_to_a_zone_are_not_shut_and_those_against_it_are);
     RUN_TEST(test_what_is_shut_has_no_way_among_random_polylines_for_every_seed);
     RUN_TEST(test_any_slicing_spends_and_answers_the_same);
     return UNITY_END();

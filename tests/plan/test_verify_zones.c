@@ -219,6 +219,11 @@ static void test_as_fast_as_the_zone_lets_it_is_fine(void) {
     world_build();
     fast_line(0.0);
     TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+    a_world();
+    (void)slow_box(0.998F); // 2e-3 faster, 1e-3 is given
+    world_build();
+    fast_line(0.0);
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_ZONE_SPEED, verified());
 }
 
 static void test_the_footprint_counts_without_its_margin(void) {

@@ -151,6 +151,16 @@ static void test_the_end_of_a_tight_arc_counts_and_not_its_chord_alone(void) {
     TEST_ASSERT_TRUE(aisle_zones_allow_piece(&hall_layout, &w[0], &w[1], NULL));
 }
 
+static void test_the_arc_counts_where_it_bulges_in_and_its_chord_is_outside(void) {
+    add_box(AISLE_POLYGON_DIRECTED, 0.0F, PI, 4.0, 4.0, 8.0, 6.0);
+    build();
+    aisle_waypoint_msg w[2];
+    arc(5.0, 6.0005, -0.0735, 3.0, 0.049, w); // 0.9 mm below its chord
+    TEST_ASSERT_FALSE(aisle_zones_allow_piece(&hall_layout, &w[0], &w[1], NULL));
+    arc(5.0, 6.0011, -0.0735, 3.0, 0.049, w);
+    TEST_ASSERT_TRUE(aisle_zones_allow_piece(&hall_layout, &w[0], &w[1], NULL));
+}
+
 static void test_a_turn_on_the_spot_is_no_way(void) {
     add_box(AISLE_POLYGON_DIRECTED, 0.0F, 0.0, 4.0, 4.0, 8.0, 6.0);
     build();
@@ -226,6 +236,7 @@ int main(void) {
     RUN_TEST(test_only_what_is_inside_counts_and_room_makes_it_wider);
     RUN_TEST(test_arcs_allowed_are_so_at_every_sample_and_few_others_are_refused_for_every_seed);
     RUN_TEST(test_the_end_of_a_tight_arc_counts_and_not_its_chord_alone);
+    RUN_TEST(test_the_arc_counts_where_it_bulges_in_and_its_chord_is_outside);
     RUN_TEST(test_a_turn_on_the_spot_is_no_way);
     RUN_TEST(test_penalties_cost_their_value_by_length_and_add_up_for_every_objective);
     RUN_TEST(test_a_pieces_toll_is_the_integral_along_the_arc_for_every_seed);
