@@ -14,13 +14,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static unsigned long seeds = 25;
+static unsigned long seeds = 12;
 static unsigned char block[(40U << 20) + AISLE_PLANNER_ALIGN];
 static aisle_planner *planner;
-static aisle_layout_msg layout;
+static aisle_layout_msg layout, held;
 static aisle_vehicle_msg vehicle;
 static aisle_query_msg query;
-static aisle_path_msg answer;
+static aisle_path_msg answer, good;
 static recompute_report report;
 static long double deviation[RECOMPUTE_RULES];
 static long paths, with_zones, refused;
@@ -252,6 +252,78 @@ static void test_larger_corner_zones_take_no_longer_and_no_more_energy(void) {
     }
 }
 
+// ---- the judge itself
+
+// A path with arcs, by a slow zone and along a directed one.
+static void ask_for_a_path_with_everything(void) {
+    vehicle = (aisle_vehicle_msg){.vehicle_revision = 1, .footprint_radius = 0.3F, .margin = 0.1F};
+    hall(12.0, 8.0);
+    (void)add_box(AISLE_POLYGON_OBSTACLE, 3.0, 0.0, 4.0, 5.0);
+    (void)add_box(AISLE_POLYGON_OBSTACLE, 7.0, 3.0, 8.0, 8.0);
+    add_box(AISLE_POLYGON_SPEED_LIMIT, 0.0, 2.0, 3.0, 4.0)->value = 0.25F;
+    add_box(AISLE_POLYGON_DIRECTED, 4.5, 2.5, 6.5, 5.5)->direction = -0.75F;
+    open_door();
+    TEST_ASSERT_EQUAL(AISLE_OK, send_layout());
+    query = (aisle_query_msg){.query_id = 1, .map_id = 1, .num_goals = 1};
+    query.start = (aisle_goal_msg){.x = 1.0, .y = 1.0, .tolerance_theta = 4.0F};
+    query.goals[0] = (aisle_goal_msg){.id = 1, .x = 11.0, .y = 7.0, .tolerance_theta = 4.0F};
+    query.options.planner = AISLE_OPTIONS_ASTAR;
+    query.options.objective = AISLE_OPTIONS_SHORTEST;
+    TEST_ASSERT_TRUE(ask());
+}
+
+static void spoil(recompute_rule rule) {
+    aisle_waypoint_msg *w = answer.waypoints, *last = &w[answer.num_waypoints - 1];
+    float *const limits[RECOMPUTE_RULES] = {[RECOMPUTE_CREEP] = &vehicle.creep_speed,
+                                            [RECOMPUTE_SPEED] = &vehicle.v_max,
+                                            [RECOMPUTE_ACCELERATION] = &vehicle.a_max,
+                                            [RECOMPUTE_BRAKING] = &vehicle.d_max,
+                                            [RECOMPUTE_LATERAL] = &vehicle.lateral_a_max,
+                                            [RECOMPUTE_TURN_RATE] = &vehicle.omega_max,
+                                            [RECOMPUTE_CURVATURE] = &vehicle.curvature_max,
+                                            [RECOMPUTE_ZONE_SPEED] = &layout.polygons[2].value};
+    float *const told[RECOMPUTE_RULES] = {
+        [RECOMPUTE_S] = &w[2].s, [RECOMPUTE_T] = &w[2].t, [RECOMPUTE_REST] = &last->v};
+    float *const sums[RECOMPUTE_RULES] = {[RECOMPUTE_LENGTH] = &answer.length,
+                                          [RECOMPUTE_DURATION] = &answer.duration,
+                                          [RECOMPUTE_ENERGY] = &answer.energy};
+    if (limits[rule] != NULL) {
+        *limits[rule] = 0.05F;
+    } else if (told[rule] != NULL) {
+        *told[rule] += 0.01F;
+    } else if (sums[rule] != NULL) {
+        *sums[rule] *= 1.01F;
+    } else if (rule == RECOMPUTE_MARGIN) {
+        vehicle.margin += 0.05F;
+    } else if (rule == RECOMPUTE_CLEARANCE) {
+        answer.clearance_min += 0.01F;
+    } else if (rule == RECOMPUTE_HEADING) {
+        w[1].theta += 0.01;
+    } else {
+        layout.polygons[3].direction += 3.0F;
+    }
+}
+
+static void test_the_judge_notices_each_figure_that_is_wrong(void) {
+    ask_for_a_path_with_everything();
+    good = answer;
+    const aisle_vehicle_msg body = vehicle;
+    held = layout;
+    judge();
+    for (int r = 0; r < RECOMPUTE_RULES; r++) {
+        answer = good;
+        vehicle = body;
+        layout = held;
+        spoil((recompute_rule)r);
+        const recompute_world spoilt = {layout.x_min, layout.y_min,    layout.x_max,
+                                        layout.y_max, layout.polygons, layout.num_polygons};
+        recompute(&answer, &vehicle, &spoilt, query.goals, query.num_goals, &report);
+        recompute_rule first;
+        TEST_ASSERT_FALSE_MESSAGE(recompute_is_fine(&report, &first), recompute_name((recompute_rule)r));
+        TEST_ASSERT_TRUE_MESSAGE(report.worst[r].excess > 4e-3L, recompute_name((recompute_rule)r));
+    }
+}
+
 static void tell(void) {
     printf("%ld paths, %ld refusals, %ld zones beside them\n", paths, refused, with_zones);
     for (int r = 0; r < RECOMPUTE_RULES; r++) {
@@ -266,6 +338,7 @@ int main(int argc, char **argv) {
     }
     UNITY_BEGIN();
     RUN_TEST(test_random_paths_of_all_drives_with_zones_are_what_they_say_for_every_seed);
+    RUN_TEST(test_the_judge_notices_each_figure_that_is_wrong);
     RUN_TEST(test_larger_corner_zones_take_no_longer_and_no_more_energy);
     const int failed = UNITY_END();
     tell();
