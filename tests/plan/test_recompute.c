@@ -274,14 +274,11 @@ static void ask_for_a_path_with_everything(void) {
 
 static void spoil(recompute_rule rule) {
     aisle_waypoint_msg *w = answer.waypoints, *last = &w[answer.num_waypoints - 1];
-    float *const limits[RECOMPUTE_RULES] = {[RECOMPUTE_CREEP] = &vehicle.creep_speed,
-                                            [RECOMPUTE_SPEED] = &vehicle.v_max,
-                                            [RECOMPUTE_ACCELERATION] = &vehicle.a_max,
-                                            [RECOMPUTE_BRAKING] = &vehicle.d_max,
-                                            [RECOMPUTE_LATERAL] = &vehicle.lateral_a_max,
-                                            [RECOMPUTE_TURN_RATE] = &vehicle.omega_max,
-                                            [RECOMPUTE_CURVATURE] = &vehicle.curvature_max,
-                                            [RECOMPUTE_ZONE_SPEED] = &layout.polygons[2].value};
+    float *const limits[RECOMPUTE_RULES] = {
+        [RECOMPUTE_CREEP] = &vehicle.creep_speed,       [RECOMPUTE_SPEED] = &vehicle.v_max,
+        [RECOMPUTE_ACCELERATION] = &vehicle.a_max,      [RECOMPUTE_BRAKING] = &vehicle.d_max,
+        [RECOMPUTE_LATERAL] = &vehicle.lateral_a_max,   [RECOMPUTE_TURN_RATE] = &vehicle.omega_max,
+        [RECOMPUTE_CURVATURE] = &vehicle.curvature_max, [RECOMPUTE_ZONE_SPEED] = &layout.polygons[2].value};
     float *const told[RECOMPUTE_RULES] = {
         [RECOMPUTE_S] = &w[2].s, [RECOMPUTE_T] = &w[2].t, [RECOMPUTE_REST] = &last->v};
     float *const sums[RECOMPUTE_RULES] = {[RECOMPUTE_LENGTH] = &answer.length,
