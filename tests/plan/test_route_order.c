@@ -142,6 +142,24 @@ static void test_no_given_order_is_shorter(void) {
     }
 }
 
+static void test_the_searches_for_the_order_are_counted(void) {
+    take_hall(1);
+    const int64_t *counters = aisle_planner_counters(door);
+    int64_t before = counters[AISLE_COUNTER_NODES];
+    (void)door_ask(&query);
+    const int64_t any = counters[AISLE_COUNTER_NODES] - before;
+    TEST_ASSERT_EQUAL_INT(3, goals_passed(&door_reply));
+    aisle_query_msg given = query;
+    given.ordering = AISLE_GOAL_LIST_ORDERED;
+    for (int i = 0; i < 3; i++) {
+        given.goals[i] = query.goals[ids[i] - 31];
+    }
+    before = counters[AISLE_COUNTER_NODES];
+    const float length = door_reply.length;
+    TEST_ASSERT_EQUAL_FLOAT(length, door_ask(&given)->length); // the same legs
+    TEST_ASSERT_TRUE(any > counters[AISLE_COUNTER_NODES] - before);
+}
+
 static void test_64_goals_are_all_passed_and_shorter_than_given(void) {
     take_hall(1);
     aisle_rng rng = aisle_rng_seed(2);
@@ -227,6 +245,7 @@ static void test_a_goal_that_no_way_leads_to_is_named_wherever_it_stands_in_the_
     hall_add(8.0, 0.0, 8.2, 2.5); // a room about (10, 1)
     hall_add(8.0, 2.3, 12.0, 2.5);
     take_hall(1);
+    int32_t units = 0;
     for (int at = 0; at < 3; at++) {
         ask_behind_the_wall();
         query.goals[at].x = 10.0;
@@ -237,6 +256,8 @@ static void test_a_goal_that_no_way_leads_to_is_named_wherever_it_stands_in_the_
         TEST_ASSERT_EQUAL_INT32(31 + at, reply->cause_id);
         TEST_ASSERT_EQUAL_INT32(31 + at, reply->waypoints[0].goal_id);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0, reply->waypoints[0].x);
+        units = at == 0 ? reply->work_units : units;
+        TEST_ASSERT_INT32_WITHIN(units / 50, units, reply->work_units); // no other leg is planned before it
     }
 }
 
@@ -392,6 +413,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_the_order_goes_by_true_ways_where_beelines_mislead);
     RUN_TEST(test_no_given_order_is_shorter);
+    RUN_TEST(test_the_searches_for_the_order_are_counted);
     RUN_TEST(test_64_goals_are_all_passed_and_shorter_than_given);
     RUN_TEST(test_goals_on_the_start_and_on_each_other_are_passed);
     RUN_TEST(test_any_slicing_gives_the_same_bytes);
