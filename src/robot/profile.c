@@ -2,10 +2,10 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "base/rounding.h"
 #include "robot/curve.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #define GRAVITY 9.80665   // m/s2
 #define CHORD_EXCESS 1e-6 // relative: curvature travels as float
@@ -19,26 +19,6 @@ typedef struct piece { // between two waypoints
     double length; // m; 0 for a turn on the spot
     double turn;   // rad
 } piece;
-
-// ---- rounding to float in a chosen direction, for x >= 0 far below FLT_MAX
-
-static float next_float(float x, int step) { // x > 0, or x = 0 and step > 0
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits = step > 0 ? bits + 1U : bits - 1U; // floats of one sign are ordered as their bits
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static float float_below(double x) {
-    const float nearest = (float)x;
-    return (double)nearest > x ? next_float(nearest, -1) : nearest;
-}
-
-static float float_above(double x) {
-    const float nearest = (float)x;
-    return (double)nearest < x ? next_float(nearest, 1) : nearest;
-}
 
 // ---- geometry of pieces
 
@@ -199,8 +179,8 @@ static double piece_limit(const aisle_vehicle *vehicle, const aisle_layout *layo
 static void bound_pieces(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w, uint32_t n) {
     for (uint32_t i = 1; i < n; i++) {
         const piece p = piece_at(w, i);
-        w[i].s = float_below(p.length);
-        w[i].a = float_below(piece_limit(vehicle, layout, &p));
+        w[i].s = aisle_float_below(p.length);
+        w[i].a = aisle_float_below(piece_limit(vehicle, layout, &p));
     }
 }
 
@@ -219,7 +199,7 @@ static void bound_waypoints(aisle_waypoint_msg *w, uint32_t n) {
 static void lower(float *v, float v0, double acceleration, float length) {
     const double reached = sqrt((double)v0 * (double)v0 + 2.0 * acceleration * (double)length);
     if (reached < (double)*v) {
-        *v = float_below(reached);
+        *v = aisle_float_below(reached);
     }
 }
 
@@ -234,8 +214,7 @@ static void bound_accelerations(const aisle_vehicle *vehicle, aisle_waypoint_msg
 
 // ---- times and sums
 
-// From rest to rest over `way` at most at `most`: up with `up`, down with `down`. *peak: the greatest speed.
-static double rest_to_rest(double way, double most, double up, double down, double *peak) {
+double aisle_rest_to_rest(double way, double most, double up, double down, double *peak) {
     const double triangle = sqrt(2.0 * way * up * down / (up + down));
     *peak = aisle_min(triangle, most);
     const double ramps = 0.5 * *peak * *peak * (1.0 / up + 1.0 / down); // way spent in them
@@ -264,11 +243,11 @@ static double drive(const aisle_vehicle *vehicle, const piece *p, double limit, 
     const double v0 = (double)p->from->v, v1 = (double)p->to->v;
     double peak = 0.0, duration;
     if (is_turn(p)) {
-        duration = rest_to_rest(fabs(p->turn), vehicle->omega_max, vehicle->alpha_max, vehicle->alpha_max, &peak);
+        duration = aisle_rest_to_rest(fabs(p->turn), vehicle->omega_max, vehicle->alpha_max, vehicle->alpha_max, &peak);
     } else if (v0 + v1 > 0.0) {
         duration = 2.0 * p->length / (v0 + v1);
     } else {
-        duration = rest_to_rest(p->length, limit, vehicle->a_max, vehicle->d_max, &peak);
+        duration = aisle_rest_to_rest(p->length, limit, vehicle->a_max, vehicle->d_max, &peak);
     }
     const aisle_piece_work w = work_of(vehicle, p, peak);
     *work = w.rolling + w.acceleration + w.turning;
@@ -301,7 +280,7 @@ static aisle_status lay_out(const aisle_vehicle *vehicle, aisle_waypoint_msg *w,
         work_total += work;
         risk += risk_of(vehicle, p.to) * p.length;
         w[i].s = (float)length;
-        w[i].t = float_above(arrival);
+        w[i].t = aisle_float_above(arrival);
         w[i].a = (float)acceleration_of(&p);
     }
     sum->length = length;

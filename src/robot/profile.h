@@ -79,6 +79,10 @@ typedef struct aisle_piece_work {
 aisle_piece_work aisle_piece_work_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
                                      const aisle_waypoint_msg *to, double peak);
 
+// Least time (s) from rest to rest over `way` (m or rad, >= 0), never faster than `most` (> 0), up with `up`, down with
+// `down` (> 0): a trapezoid or triangle. *peak: the greatest speed. O(1).
+double aisle_rest_to_rest(double way, double most, double up, double down, double *peak);
+
 // Signed turn (rad) of theta, the short way, in (-pi, pi]. O(1).
 double aisle_piece_turn(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to);
 #endif

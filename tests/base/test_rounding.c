@@ -1,0 +1,40 @@
+#include "base/rounding.h" // first: proves that the header stands alone
+
+#include "base/rng.h"
+#include "unity.h"
+
+#include <math.h>
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void test_neighbours_are_the_next_floats(void) {
+    const float x[] = {1.0F, 0.1F, 3.5e-39F, 1e30F, 16384.0F};
+    for (int i = 0; i < 5; i++) {
+        TEST_ASSERT_TRUE(!(aisle_float_next(x[i], 1) < nextafterf(x[i], 1e38F)));
+        TEST_ASSERT_TRUE(!(aisle_float_next(x[i], 1) > nextafterf(x[i], 1e38F)));
+        TEST_ASSERT_TRUE(!(aisle_float_next(x[i], -1) < nextafterf(x[i], 0.0F)));
+        TEST_ASSERT_TRUE(!(aisle_float_next(x[i], -1) > nextafterf(x[i], 0.0F)));
+    }
+    TEST_ASSERT_TRUE(aisle_float_next(0.0F, 1) > 0.0F);
+}
+
+static void test_below_and_above_enclose_and_are_neighbours_or_the_number_itself(void) {
+    aisle_rng rng = aisle_rng_seed(1);
+    for (int i = 0; i < 20000; i++) {
+        const double x = exp(40.0 * (double)aisle_rng_float(&rng) - 20.0) * (1.0 + 1e-9 * i);
+        const float below = aisle_float_below(x), above = aisle_float_above(x);
+        TEST_ASSERT_TRUE((double)below <= x && (double)above >= x);
+        TEST_ASSERT_TRUE((double)nextafterf(below, 1e38F) > x && (double)nextafterf(above, 0.0F) < x);
+        TEST_ASSERT_TRUE((double)aisle_float_below((double)below) >= (double)below);
+        TEST_ASSERT_TRUE((double)aisle_float_above((double)below) <= (double)below);
+    }
+    TEST_ASSERT_TRUE(aisle_float_below(0.0) <= 0.0F && aisle_float_above(0.0) <= 0.0F);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_neighbours_are_the_next_floats);
+    RUN_TEST(test_below_and_above_enclose_and_are_neighbours_or_the_number_itself);
+    return UNITY_END();
+}
