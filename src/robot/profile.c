@@ -11,8 +11,9 @@
 #define CHORD_EXCESS 1e-6 // relative: curvature travels as float
 #define OVERREACH 0.05    // m, see the header
 #define CUTS_MAX 64.0
-#define TOUCH 1e-6      // m, more than all rounding of places and gaps together
-#define TOUCH_BENT 2e-3 // m, the same where the body turns or bends: more than the verifier's own overreach
+#define START_TOLERANCE 1e-6 // relative
+#define TOUCH 1e-6           // m, more than all rounding of places and gaps together
+#define TOUCH_BENT 2e-3      // m, the same where the body turns or bends: more than the verifier's own overreach
 
 typedef struct piece { // between two waypoints
     const aisle_waypoint_msg *from, *to;
@@ -90,6 +91,17 @@ static bool path_is_fit(const aisle_waypoint_msg *w, uint32_t n, const float *dw
         }
     }
     return true;
+}
+
+// In motion it may begin only where nothing asks it to rest.
+static bool start_is_fit(const aisle_waypoint_msg *w, uint32_t n, const float *dwell,
+                         const aisle_profile_start *start) {
+    if (!(start->v >= 0.0 && start->v <= AISLE_VEHICLE_SPEED_MAX && start->cap > 0.0 && start->cap_length >= 0.0)) {
+        return false;
+    }
+    const bool rests =
+        n == 1 || has(&w[0], AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE) || (dwell != NULL && dwell[0] > 0.0F);
+    return !rests || !(start->v > 0.0);
 }
 
 // ---- limits of pieces
@@ -203,13 +215,42 @@ static void lower(float *v, float v0, double acceleration, float length) {
     }
 }
 
+// What the cap allows `s` m behind the start: itself, or what braking at once leaves. Rounded so that braking suffices.
+static float cap_at(const aisle_vehicle *vehicle, const aisle_profile_start *start, double s) {
+    const double v2 = start->v * start->v - 2.0 * vehicle->d_max * s;
+    const double braked = v2 > 0.0 ? sqrt(v2) : 0.0;
+    return braked > start->cap ? aisle_float_above(braked) : aisle_float_below(start->cap);
+}
+
+static void bound_by_cap(const aisle_vehicle *vehicle, const aisle_profile_start *start, aisle_waypoint_msg *w,
+                         uint32_t n) {
+    double s = 0.0;
+    for (uint32_t i = 1; i < n && s < start->cap_length; i++) {
+        const float over = cap_at(vehicle, start, s);
+        w[i].a = w[i].a < over ? w[i].a : over; // of a piece from rest to rest
+        s += (double)w[i].s;
+        const float end = cap_at(vehicle, start, s);
+        w[i].v = w[i].v < end ? w[i].v : end;
+    }
+}
+
 static void bound_accelerations(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n) {
     for (uint32_t i = 1; i < n; i++) {
         lower(&w[i].v, w[i - 1].v, vehicle->a_max, w[i].s);
     }
-    for (uint32_t i = n - 1; i > 1; i--) { // w[0] rests as it is
+    for (uint32_t i = n - 1; i > 1; i--) { // w[0] stands as it is
         lower(&w[i - 1].v, w[i].v, vehicle->d_max, w[i].s);
     }
+}
+
+// Is what follows within reach of the brakes? Rounding may have cost the first speed a step or two.
+static bool take_start(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n) {
+    const float told = w[0].v;
+    if (n > 1 && told > 0.0F) {
+        w[0].v = told < w[1].a ? told : w[1].a;
+        lower(&w[0].v, w[1].v, vehicle->d_max, w[1].s);
+    }
+    return (double)w[0].v >= (double)told * (1.0 - START_TOLERANCE);
 }
 
 // ---- times and sums
@@ -292,14 +333,26 @@ static aisle_status lay_out(const aisle_vehicle *vehicle, aisle_waypoint_msg *w,
 
 aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                 uint32_t n, const float *dwell, aisle_profile_sum *sum) {
-    if (vehicle == NULL || w == NULL || sum == NULL || n == 0 || !path_is_fit(w, n, dwell) ||
-        (layout != NULL && !aisle_layout_is_in_force(layout))) {
+    static const aisle_profile_start at_rest = {0.0, AISLE_VEHICLE_SPEED_MAX, 0.0};
+    return aisle_profile_fill_moving(vehicle, layout, w, n, dwell, &at_rest, sum);
+}
+
+aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
+                                       uint32_t n, const float *dwell, const aisle_profile_start *start,
+                                       aisle_profile_sum *sum) {
+    if (vehicle == NULL || w == NULL || start == NULL || sum == NULL || n == 0 || !path_is_fit(w, n, dwell) ||
+        !start_is_fit(w, n, dwell, start) || (layout != NULL && !aisle_layout_is_in_force(layout))) {
         return AISLE_ERR_ARG;
     }
     AISLE_ASSERT(vehicle->v_max > 0.0 && vehicle->v_reverse_max > 0.0 && vehicle->creep_speed > 0.0);
     AISLE_ASSERT(vehicle->a_max > 0.0 && vehicle->d_max > 0.0 && vehicle->omega_max > 0.0 && vehicle->alpha_max > 0.0);
     bound_pieces(vehicle, layout, w, n);
     bound_waypoints(w, n);
+    bound_by_cap(vehicle, start, w, n);
+    w[0].v = aisle_float_below(start->v);
     bound_accelerations(vehicle, w, n);
+    if (!take_start(vehicle, w, n)) {
+        return AISLE_ERR_DATA;
+    }
     return lay_out(vehicle, w, n, dwell, sum);
 }

@@ -68,6 +68,26 @@ typedef struct aisle_profile_sum {
 aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                 uint32_t n, const float *dwell, aisle_profile_sum *sum);
 
+// How a path begins that is under way already.
+typedef struct aisle_profile_start {
+    double v;          // m/s, of the first waypoint, in [0, AISLE_VEHICLE_SPEED_MAX]
+    double cap;        // m/s, > 0, may be INFINITY
+    double cap_length; // m, >= 0: over so much of the path it is no faster than cap
+} aisle_profile_start;
+
+// The same for a path whose first waypoint is in motion (start->v > 0), or that is to be slow at first. Of pieces that
+// begin within cap_length, both ends are at most at cap or, where braking at once from start->v leaves no choice, at the
+// speed it leaves, sqrt(v^2 - 2 d_max s). For braking to end where it can, the caller cuts a piece where that speed is
+// cap. The first waypoint's REVERSE is not looked at. Its v is start->v rounded down; where rounding (1e-6 relative) lets
+// the brakes not quite suffice, as much less.
+//
+// Beside the answers of aisle_profile_fill(): AISLE_ERR_ARG, nothing changed: start NULL or out of range; in motion, but
+// the first waypoint carries STOP or TURN_IN_PLACE, has a dwell or is the only one. AISLE_ERR_DATA: too fast for what
+// follows, even braking with d_max; s, t, v, a are undefined then, all else is unchanged.
+aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
+                                       uint32_t n, const float *dwell, const aisle_profile_start *start,
+                                       aisle_profile_sum *sum);
+
 // Length (m) of the line or the minor arc from `from` to `to`, 0 if `from` carries TURN_IN_PLACE. A chord longer than
 // the diameter is taken as the diameter. Relative error at most 1e-12. O(1).
 double aisle_piece_length(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to);

@@ -5,6 +5,7 @@
 #include "base/crc32.h"
 #include "base/rng.h"
 #include "random_path.h"
+#include "robot/motion.h"
 #include "unity.h"
 #include "wire/codec.h"
 
@@ -14,6 +15,7 @@
 #include <string.h>
 
 static aisle_profile_sum sum;
+static aisle_profile_start begin; // at rest and uncapped, if not said otherwise
 
 void setUp(void) {
     static const aisle_vehicle_msg usual;
@@ -22,6 +24,7 @@ void setUp(void) {
     memset(dwell, 0, sizeof dwell);
     memset(&sum, 0, sizeof sum);
     count = 0;
+    begin = (aisle_profile_start){0.0, 20.0, 0.0};
 }
 void tearDown(void) {
     const aisle_waypoint_msg *canary = &path[CAPACITY];
@@ -32,6 +35,10 @@ void tearDown(void) {
 
 static void fill(void) {
     TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill(&vehicle, NULL, path, count, dwell, &sum));
+}
+
+static aisle_status fill_moving(void) {
+    return aisle_profile_fill_moving(&vehicle, NULL, path, count, dwell, &begin, &sum);
 }
 
 // ---- the judge: rules of the header again, in long double, from the floats as they stand
@@ -64,14 +71,29 @@ static long double judge_turn(uint32_t i) {
 
 static bool judge_rest(uint32_t i) {
     if (i == 0 || i + 1 == count) {
-        return true;
+        return i > 0 || !(begin.v > 0.0);
     }
     const bool stop = flagged(i, AISLE_WAYPOINT_STOP), turn = turning(i) || turning(i + 1);
     return stop || turn || flagged(i, AISLE_WAYPOINT_REVERSE) != flagged(i + 1, AISLE_WAYPOINT_REVERSE);
 }
 
-typedef enum cause { V_MAX, REVERSE, LATERAL, OMEGA, CREEP, UP, DOWN, REST, AT_REST_BOTH, SHORTEST_TIME, CAUSES } cause;
-static uint32_t hits[CAUSES];
+typedef enum cause {
+    V_MAX,
+    REVERSE,
+    LATERAL,
+    OMEGA,
+    CREEP,
+    UP,
+    DOWN,
+    REST,
+    AT_REST_BOTH,
+    SHORTEST_TIME,
+    CAUSES, // of paths from rest
+    CAP = CAUSES,
+    BRAKED_TO_CAP,
+    ALL_CAUSES
+} cause;
+static uint32_t hits[ALL_CAUSES];
 
 static long double judge_limit(uint32_t i, cause *why) { // of piece i, zones aside
     const long double curvature = fabsl(lf(path[i].curvature)), turn = judge_turn(i), length = judge_length(i);
@@ -91,6 +113,28 @@ static long double judge_limit(uint32_t i, cause *why) { // of piece i, zones as
         *why = CREEP;
     }
     return limit;
+}
+
+// What the cap allows of waypoint or piece i at s m; greater than any speed where it does not reach.
+static long double judge_cap(long double begins, long double s, cause *why) {
+    const long double v2 = ld(begin.v) * ld(begin.v) - 2.0L * ld(vehicle.d_max) * s;
+    const long double braked = sqrtl(fmaxl(v2, 0.0L));
+    *why = braked > ld(begin.cap) ? BRAKED_TO_CAP : CAP;
+    return begins < ld(begin.cap_length) ? fmaxl(ld(begin.cap), braked) : 1e9L;
+}
+
+static long double judge_behind(uint32_t i) { // length up to waypoint i
+    long double s = 0.0L;
+    for (uint32_t k = 1; k <= i; k++) {
+        s += judge_length(k);
+    }
+    return s;
+}
+
+// The limit of piece i with the cap.
+static long double judge_capped(uint32_t i) {
+    cause why;
+    return fminl(judge_limit(i, &why), judge_cap(judge_behind(i - 1), judge_behind(i - 1), &why));
 }
 
 static long double trapezoid(long double way, long double most, long double up, long double down, long double *peak) {
@@ -113,15 +157,23 @@ static void judge_speed(uint32_t i) {
         hits[REST]++;
         return;
     }
-    cause why[2];
-    const long double most[4] = {
-        judge_limit(i, &why[0]), judge_limit(i + 1, &why[1]),
+    if (i == 0) { // of a path under way
+        TEST_ASSERT_TRUE(v <= ld(begin.v) && v >= ld(begin.v) * (1.0L - 1.1e-6L));
+        return;
+    }
+    cause why[4];
+    const long double behind = judge_behind(i - 1), here = behind + judge_length(i);
+    const long double most[6] = {
+        judge_limit(i, &why[0]),
+        judge_limit(i + 1, &why[1]),
         sqrtl(lf(path[i - 1].v) * lf(path[i - 1].v) + 2.0L * ld(vehicle.a_max) * judge_length(i)),
-        sqrtl(lf(path[i + 1].v) * lf(path[i + 1].v) + 2.0L * ld(vehicle.d_max) * judge_length(i + 1))};
-    const cause of[4] = {why[0], why[1], UP, DOWN};
+        sqrtl(lf(path[i + 1].v) * lf(path[i + 1].v) + 2.0L * ld(vehicle.d_max) * judge_length(i + 1)),
+        judge_cap(behind, here, &why[2]),
+        judge_cap(here, here, &why[3])};
+    const cause of[6] = {why[0], why[1], UP, DOWN, why[2], why[3]};
     int least = 0;
-    for (int k = 0; k < 4; k++) {
-        TEST_ASSERT_TRUE(v <= most[k] * (1.0L + 1e-12L));
+    for (int k = 0; k < 6; k++) {
+        TEST_ASSERT_TRUE(v <= most[k] * (1.0L + (k < 4 ? 1e-12L : 2e-7L)));
         least = most[k] < most[least] ? k : least;
     }
     TEST_ASSERT_TRUE(v >= most[least] * (1.0L - 3e-7L));
@@ -132,7 +184,6 @@ static long double judge_duration(uint32_t i, long double *work) { // of piece i
     const long double v0 = lf(path[i - 1].v), v1 = lf(path[i].v), length = judge_length(i), turn = judge_turn(i);
     const long double weight = ld(vehicle.mass) * 9.80665L * ld(vehicle.rolling_resistance);
     long double peak;
-    cause unused;
     if (turning(i)) {
         *work = weight * ld(vehicle.outer_radius) * turn;
         return trapezoid(turn, ld(vehicle.omega_max), ld(vehicle.alpha_max), ld(vehicle.alpha_max), &peak);
@@ -143,7 +194,7 @@ static long double judge_duration(uint32_t i, long double *work) { // of piece i
         return 2.0L * length / (v0 + v1);
     }
     hits[AT_REST_BOTH]++;
-    const long double t = trapezoid(length, judge_limit(i, &unused), ld(vehicle.a_max), ld(vehicle.d_max), &peak);
+    const long double t = trapezoid(length, judge_capped(i), ld(vehicle.a_max), ld(vehicle.d_max), &peak);
     *work += 0.5L * ld(vehicle.mass) * peak * peak;
     return t;
 }
@@ -202,6 +253,158 @@ static void test_every_rule_holds_and_no_speed_could_be_higher_for_200_of_200_pa
     for (int i = 0; i < CAUSES; i++) { // the seeds meet every case
         TEST_ASSERT_GREATER_THAN_UINT32_MESSAGE(50, hits[i], "a case hardly met");
     }
+}
+
+// ---- under way
+
+// A random path from a place in the middle of a piece on, begin.v being its speed there.
+static bool cut_random_path(uint64_t seed) {
+    static aisle_waypoint_msg whole[CAPACITY];
+    aisle_rng rng = aisle_rng_seed(seed);
+    setUp();
+    if (seed % 2 == 1) {
+        random_vehicle(seed);
+    }
+    random_path(seed, 20 + (uint32_t)seed);
+    fill();
+    const uint32_t piece = 1 + aisle_rng_below(&rng, count - 1);
+    const aisle_place at = {piece, uniform(&rng, 0.05, 0.95)};
+    begin.v = aisle_motion_speed(&vehicle, path, count, dwell, at);
+    memcpy(whole, path, sizeof whole);
+    const uint32_t n = aisle_motion_cut(&vehicle, whole, count, dwell, at, path, CAPACITY);
+    TEST_ASSERT_GREATER_THAN_UINT32(1, n);
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t old = count - n + i; // n may be greater: of a trapezoid, which has no dwell between
+        dwell[i] = n <= count && i > 0 ? dwell[old] : 0.0F;
+    }
+    count = n;
+    return n <= CAPACITY && begin.v > 1e-3;
+}
+
+static void test_every_rule_holds_of_paths_under_way_for_400_of_400(void) {
+    uint32_t moving = 0;
+    memset(hits, 0, sizeof hits);
+    for (uint64_t seed = 0; seed < 400; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed + 1000U);
+        moving += cut_random_path(seed) ? 1U : 0U;
+        if (seed % 4 != 0) {
+            begin.cap = uniform(&rng, 0.05, 1.2) * vehicle.v_max;
+            begin.cap_length = uniform(&rng, 0.0, 10.0);
+        }
+        const aisle_status st = fill_moving();
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, st);
+        (void)judge_path();
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(250, moving);
+    TEST_ASSERT_GREATER_THAN_UINT32(500, hits[CAP]);
+    TEST_ASSERT_GREATER_THAN_UINT32(50, hits[BRAKED_TO_CAP]);
+}
+
+static void test_without_a_cap_a_path_goes_on_with_the_speeds_it_had(void) {
+    static aisle_waypoint_msg before[CAPACITY];
+    for (uint64_t seed = 0; seed < 100; seed++) {
+        (void)cut_random_path(seed);
+        memcpy(before, path, sizeof before);
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+        for (uint32_t i = 0; i < count; i++) {
+            TEST_ASSERT_FLOAT_WITHIN(1e-5F * before[i].v + 1e-6F, before[i].v, path[i].v);
+        }
+    }
+}
+
+static void test_at_rest_and_without_a_cap_it_is_the_plain_fill(void) {
+    static aisle_waypoint_msg plain[CAPACITY];
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        setUp();
+        random_path(seed, 200);
+        fill();
+        memcpy(plain, path, sizeof plain);
+        const aisle_profile_sum once = sum;
+        begin.cap = (double)INFINITY;
+        begin.cap_length = (double)INFINITY;
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+        TEST_ASSERT_EQUAL_MEMORY(plain, path, sizeof plain);
+        TEST_ASSERT_EQUAL_MEMORY(&once, &sum, sizeof sum);
+    }
+}
+
+static void test_a_cap_slows_the_first_metres_alone(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(10.0, 0.25);
+    begin = (aisle_profile_start){1.0, 0.5, 3.1}; // 1 m/s to 0.5 m/s at 0.5 m/s2: 0.75 m; the 13th piece begins at 3 m
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+    for (uint32_t i = 0; i < count; i++) {
+        const double s = 0.25 * i;
+        const double braked = sqrt(fmax(1.0 - s, 0.25)), up = sqrt(0.25 + fmax(s - 3.25, 0.0)), down = sqrt(10.0 - s);
+        const double wanted = s < 3.3 ? braked : fmin(fmin(up, down), 1.5);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, wanted, (double)path[i].v);
+    }
+    const double first = (1.0 - 0.5) / 0.5; // s of braking
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, first, (double)path[3].t);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, first + 2.5 / 0.5, (double)path[13].t);
+}
+
+static void test_a_start_too_fast_for_what_follows_is_refused_and_the_geometry_stays(void) {
+    static aisle_waypoint_msg before[CAPACITY];
+    (void)add(0.0, 0.0, 0.0);
+    add_line(1.0, 0.25); // at 0.5 m/s2: 1 m/s just stops
+    memcpy(before, path, sizeof before);
+    begin.v = 1.0;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+    begin.v = 1.0 + 1e-5;
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_DATA, fill_moving());
+    begin.v = 0.4;
+    path[1].clearance = 0.1F; // creep from the start on
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_DATA, fill_moving());
+    path[1].clearance = before[1].clearance;
+    for (uint32_t i = 0; i < count; i++) {
+        before[i].s = path[i].s;
+        before[i].t = path[i].t;
+        before[i].v = path[i].v;
+        before[i].a = path[i].a;
+    }
+    TEST_ASSERT_EQUAL_MEMORY(before, path, sizeof before);
+}
+
+static void test_a_start_that_makes_no_sense_is_refused_and_changes_nothing(void) {
+    static aisle_waypoint_msg before[CAPACITY];
+    (void)add(0.0, 0.0, 0.0);
+    add_line(8.0, 0.25);
+    fill();
+    memcpy(before, path, sizeof before);
+    const double none = (double)NAN, all = (double)INFINITY;
+    const aisle_profile_start wrong[] = {{-0.1, 1.0, 1.0}, {none, 1.0, 1.0}, {20.1, 1.0, 1.0},
+                                         {1.0, 0.0, 1.0},  {1.0, -1.0, 1.0}, {1.0, none, 1.0},
+                                         {1.0, 1.0, -1.0}, {1.0, 1.0, none}, {all, 1.0, 1.0}};
+    for (uint32_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        begin = wrong[i];
+        TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, fill_moving());
+    }
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill_moving(&vehicle, NULL, path, count, dwell, NULL, &sum));
+    TEST_ASSERT_EQUAL_MEMORY(before, path, sizeof before);
+}
+
+static void test_where_it_must_rest_it_cannot_begin_in_motion(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(8.0, 0.25);
+    begin.v = 1.0;
+    for (int what = 0; what < 3; what++) {
+        const int16_t flags[3] = {AISLE_WAYPOINT_STOP, 0, 0};
+        path[0].flags = flags[what];
+        dwell[0] = what == 1 ? 1.0F : 0.0F;
+        const uint32_t all = count;
+        count = what == 2 ? 1 : count;
+        TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, fill_moving());
+        begin.v = 0.0;
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+        begin.v = 1.0;
+        count = all;
+    }
+    path[0].flags = AISLE_WAYPOINT_TURN_IN_PLACE;
+    path[1] = path[0];
+    path[1].flags = 0;
+    path[1].theta = 0.5;
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, fill_moving());
 }
 
 static void test_a_path_of_1024_waypoints_and_3000_seconds_keeps_every_rule_as_float(void) {
@@ -959,6 +1162,13 @@ static void test_zones_agree_with_brute_force_for_2000_of_2000_pieces(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_rule_holds_and_no_speed_could_be_higher_for_200_of_200_paths);
+    RUN_TEST(test_every_rule_holds_of_paths_under_way_for_400_of_400);
+    RUN_TEST(test_without_a_cap_a_path_goes_on_with_the_speeds_it_had);
+    RUN_TEST(test_at_rest_and_without_a_cap_it_is_the_plain_fill);
+    RUN_TEST(test_a_cap_slows_the_first_metres_alone);
+    RUN_TEST(test_a_start_too_fast_for_what_follows_is_refused_and_the_geometry_stays);
+    RUN_TEST(test_a_start_that_makes_no_sense_is_refused_and_changes_nothing);
+    RUN_TEST(test_where_it_must_rest_it_cannot_begin_in_motion);
     RUN_TEST(test_a_path_of_1024_waypoints_and_3000_seconds_keeps_every_rule_as_float);
     RUN_TEST(test_micrometre_pieces_stay_a_millisecond_apart_however_late);
     RUN_TEST(test_a_long_line_is_driven_as_a_trapezoid);
