@@ -85,9 +85,12 @@ static aisle_verify_fault header_fault(aisle_verify *self) {
 
 static uint64_t digest_of_given(const aisle_verify_request *request) {
     uint8_t vehicle[AISLE_VEHICLE_CONTENT_BYTES];
-    const double start[3] = {request->start.x, request->start.y, request->start.theta};
+    const double start[4] = {request->start.x, request->start.y, request->start.theta, request->v_start};
     uint64_t digest = aisle_digest(0, vehicle, aisle_vehicle_content(request->vehicle, vehicle));
     digest = aisle_digest(digest, start, sizeof start);
+    if (request->base != NULL) {
+        digest = aisle_verify_base_digest(digest, request->base);
+    }
     for (uint32_t i = 0; i < request->num_goals; i++) {
         const aisle_goal_msg *goal = &request->goals[i];
         const double place[3] = {goal->x, goal->y, goal->theta};
@@ -188,7 +191,7 @@ static bool take_piece(aisle_verify *self, uint32_t i) {
         AISLE_ASSERT(self->goals >= 1 && self->goals <= self->request.num_goals);
         dwell = (double)self->request.goals[self->goals - 1].dwell;
     }
-    aisle_verify_time_piece(self, i, aisle_max(dwell, 0.0), &self->piece);
+    aisle_verify_time_piece(self->request.vehicle, &w[i - 1], &w[i], aisle_max(dwell, 0.0), false, &self->piece);
     return true;
 }
 
@@ -266,9 +269,8 @@ static aisle_status finish(aisle_verify *self) {
     return AISLE_OK;
 }
 
-// Takes up the motion from the first piece; a lone waypoint is a place to stand.
-static void begin_motion(aisle_verify *self) {
-    self->phase = AISLE_VERIFY_PHASE_MOTION;
+// Takes the first piece in hand, for the base or the motion; a lone waypoint is a place to stand.
+static void go_to_first_piece(aisle_verify *self) {
     self->goals = 0;
     self->at = waypoints(self) == 1 ? 0 : 1;
     if (self->at == 1) {
@@ -276,6 +278,18 @@ static void begin_motion(aisle_verify *self) {
     }
     bool taken = take_piece(self, self->at);
     AISLE_ASSERT(taken);
+}
+
+void aisle_verify_next_piece(aisle_verify *self) {
+    count_goal(self, self->at);
+    self->at++;
+    bool taken = take_piece(self, self->at);
+    AISLE_ASSERT(taken); // looked at before
+}
+
+static void begin_motion(aisle_verify *self) {
+    self->phase = AISLE_VERIFY_PHASE_MOTION;
+    go_to_first_piece(self);
     aisle_verify_motion_begin(self);
 }
 
@@ -292,7 +306,24 @@ static aisle_status step_waypoint(aisle_verify *self) {
     if (fault != AISLE_VERIFY_NONE) {
         return fail(self, fault, waypoints(self) - 1);
     }
-    begin_motion(self);
+    if (self->request.base == NULL) {
+        begin_motion(self);
+        return AISLE_BUSY;
+    }
+    self->phase = AISLE_VERIFY_PHASE_BASE;
+    go_to_first_piece(self);
+    aisle_verify_base_begin(self);
+    return AISLE_BUSY;
+}
+
+static aisle_status step_base(aisle_verify *self) {
+    aisle_status status = aisle_verify_base_step(self);
+    if (status == AISLE_ERR_DATA) {
+        return fail(self, AISLE_VERIFY_BASE, self->at);
+    }
+    if (status == AISLE_OK) {
+        begin_motion(self);
+    }
     return AISLE_BUSY;
 }
 
@@ -304,12 +335,10 @@ static aisle_status step_motion(aisle_verify *self) {
     if (status == AISLE_BUSY) {
         return AISLE_BUSY;
     }
-    count_goal(self, self->at);
-    if (++self->at >= waypoints(self)) {
+    if (self->at + 1U >= waypoints(self)) {
         return finish(self);
     }
-    bool taken = take_piece(self, self->at);
-    AISLE_ASSERT(taken);
+    aisle_verify_next_piece(self);
     aisle_verify_motion_begin(self);
     return AISLE_BUSY;
 }
@@ -320,6 +349,8 @@ static aisle_status step_once(aisle_verify *self) {
         return step_header(self);
     case AISLE_VERIFY_PHASE_WAYPOINTS:
         return step_waypoint(self);
+    case AISLE_VERIFY_PHASE_BASE:
+        return step_base(self);
     case AISLE_VERIFY_PHASE_MOTION:
         return step_motion(self);
     case AISLE_VERIFY_PHASE_DONE:
@@ -333,6 +364,7 @@ void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request,
     AISLE_ASSERT(request->layout != NULL && vehicle != NULL && request->bytes != NULL && decoded != NULL);
     AISLE_ASSERT(vehicle->n >= 1 && vehicle->n <= AISLE_SHAPE_VERTICES_MAX);
     AISLE_ASSERT(request->num_goals == 0 || request->goals != NULL);
+    AISLE_ASSERT(request->v_start >= 0.0 && request->v_start <= DBL_MAX);
     memset(self, 0, sizeof *self);
     self->request = *request;
     self->path = decoded;

@@ -3,7 +3,8 @@
 // Works on the bytes of a path_t, in double, from the primitive curve its waypoints define, and shares no code with the
 // search: its own geometry of pieces, obstacles straight from the layout's polygons, scan bits and bounds (not the
 // distance field), narrow phase by separating axes, and by libccd (world/collide.h) for all they do not part. Files: verify_piece.c (curve), verify_limits.c (what the
-// vehicle can do), verify_zones.c (directed zones), verify_motion.c (collision proof, speed limits of zones), verify.c (order of it all), release.c (the way out).
+// vehicle can do), verify_zones.c (directed zones), verify_motion.c (collision proof, speed limits of zones),
+// verify_base.c (what is under way stays), verify.c (order of it all), release.c (the way out).
 //
 // Motion. Between waypoints i-1 and i: a turn on the spot if waypoint i-1 carries TURN_IN_PLACE (x, y equal within
 // 1e-9 m,
@@ -48,7 +49,8 @@
 // - heading within 2e-3 rad of the direction of motion at both ends of a piece (backwards with REVERSE) and turning
 // as the
 //   curve does, unless OMNI; OMNI: direction of motion steady within 4e-3 rad where it moves;
-// - rest (below 1e-6 m/s) at first and last waypoint, STOP, both ends of turns, and where REVERSE changes;
+// - rest (below 1e-6 m/s) at last waypoint, STOP, both ends of turns, and where REVERSE changes; no faster than v_start at
+//   the first one (which way an OMNI vehicle then moves there only a base tells);
 // - length, duration equal the waypoints' sums; 0 <= length_bound <= length; clearance_min not above any piece's;
 // - map and vehicle revisions are those proved against; certificate right.
 // Zones, by the motion, not by the heading (REVERSE changes nothing):
@@ -60,6 +62,14 @@
 //   chord, grown by the sagitta, is outside; at a sagitta of 0.4e-6 m it is inside. At most 5000 looks for a zone and a
 //   piece of 20 m; all of a piece count as one unit.
 // PENALTY zones bind nobody: nothing to prove.
+// Base (request.base), where a path takes over from one under way (verify_base.c): both curves are walked by the same metres
+// and, in turns on the spot, radians, waits left out, until the base or the new path ends. At the knots of either (waypoints,
+// where a trapezoid's speed bends, where the old speed passes v_start) and at three places between two of them
+// - the origins are at most 1e-6 m apart and the headings 1e-6 rad, turns go the same way round;
+// - the new path is at most as fast as the old one or v_start, whichever is more (both 1e-6 m off each other at worst, and
+//   what float times leave open in the trapezoid of a piece at rest at both ends counted in favour). Between knots both
+//   squares are linear in the way, so the knots suffice. Rates of turns are not compared: turn times prove themselves.
+// num_base counts the new path's waypoints on the base: those more than 1e-6 m before its end, none more than that behind.
 // Not proved: the waypoints' clearances, energy, risk and length_bound themselves.
 // Again. What was proved once and is shown with the basis of that proof is not looked at again if nothing of the basis
 // has changed, for the verdict would be the same: only the digests are made anew (one pass over the bytes), and ids,
@@ -83,20 +93,34 @@
 typedef struct aisle_proof_basis {
     uint64_t path;   // digest of the waypoints and of the members from status on before them, as encoded; cached,
                      // work_units and certificate taken as 0
-    uint64_t given;  // digest of start, goals and aisle_vehicle_content()
+    uint64_t given;  // digest of start, v_start, base, goals and aisle_vehicle_content()
     uint64_t layout; // aisle_layout_content()
     int32_t map_id, map_revision;
     uint32_t waypoints; // crc32 of them as encoded, for certificates
     uint32_t size;      // bytes of the path; 0: nothing proved
 } aisle_proof_basis;
 
+// The part of a path under way that a later one must not change.
+typedef struct aisle_verify_base {
+    const aisle_waypoint_msg *w; // [n >= 1] of the path that is out, proved once for this vehicle
+    uint32_t n;
+    const float *dwell; // [n] s, rest at each before going on, as in profile.h; NULL: none
+    uint32_t piece;     // where on it the new path begins: index of the piece's later waypoint, [1, n-1] (n = 1: 0),
+    double u;     // and the part of the piece behind, [0, 1]; of the turn in a turn on the spot. Where at most 2e-6 m
+                  // or rad of the piece are left, its end will do, too
+    double reach; // m of travel from there after which the base ends, >= 0
+    bool turn;    // what is left of the turn on the spot that the place is in belongs to it even if reach is 0
+} aisle_verify_base;
+
 typedef struct aisle_verify_request {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
     const uint8_t *bytes; // encoded path_t, stays put until the end
     size_t size;
-    aisle_pose2 start;           // where the motion must begin, within 1e-6
-    const aisle_goal_msg *goals; // [num_goals] to be reached in this order, flags GOAL with their ids
+    aisle_pose2 start;             // where the motion must begin, within 1e-6
+    double v_start;                // m/s >= 0, allowed at the first waypoint; 0: begins at rest
+    const aisle_verify_base *base; // stays put until the end; NULL: nothing is under way
+    const aisle_goal_msg *goals;   // [num_goals] to be reached in this order, flags GOAL with their ids
     uint32_t num_goals;
     const aisle_proof_basis *basis; // of an earlier proof of the same path; NULL: none
 } aisle_verify_request;
@@ -119,7 +143,8 @@ typedef enum aisle_verify_fault {
     AISLE_VERIFY_SUMS,        // length, duration, bound or clearance_min do not fit the waypoints
     AISLE_VERIFY_CERTIFICATE, // not the crc of these waypoints and revisions
     AISLE_VERIFY_ZONE_SPEED,  // too fast in a SPEED_LIMIT zone
-    AISLE_VERIFY_DIRECTION    // against a DIRECTED zone's direction
+    AISLE_VERIFY_DIRECTION,   // against a DIRECTED zone's direction
+    AISLE_VERIFY_BASE         // leaves the base, is faster on it, or num_base does not count its waypoints
 } aisle_verify_fault;
 
 // What a proof leaves behind. Only verify.c writes one; release() checks it.
@@ -153,10 +178,20 @@ typedef struct aisle_verify_motion { // intervals of the piece in hand; verify_m
     bool heeds_limits;               // SPEED_LIMIT zones slower than the piece are kept off
 } aisle_verify_motion;
 
+typedef struct aisle_verify_walk { // along the base; the new path's piece is the one in hand; verify_base.c
+    uint32_t at;                   // piece of the path that is out, n: past its end
+    aisle_verify_piece piece;      // it
+    double done, done_new;         // m, or rad of a turn, behind: of this piece and of the one in hand
+    double left;                   // m of the base
+    bool in_turn;                  // the turn that it begins in is not over
+    uint32_t counted;              // waypoints of the new path that are on it for certain
+} aisle_verify_walk;
+
 typedef enum aisle_verify_phase {
     AISLE_VERIFY_PHASE_HEADER,    // decode, check what is not a waypoint
     AISLE_VERIFY_PHASE_WAYPOINTS, // limits, goals
-    AISLE_VERIFY_PHASE_MOTION,    // collisions
+    AISLE_VERIFY_PHASE_BASE,
+    AISLE_VERIFY_PHASE_MOTION, // collisions
     AISLE_VERIFY_PHASE_DONE
 } aisle_verify_phase;
 
@@ -180,6 +215,7 @@ typedef struct aisle_verify {
     double s;                // m, sum of lengths so far
     double along;            // rad, direction of motion at the end of the last piece
     aisle_verify_piece piece;
+    aisle_verify_walk walk;
     aisle_verify_motion motion;
 } aisle_verify;
 
@@ -187,7 +223,8 @@ typedef struct aisle_verify {
 // changes meanwhile is a CERTIFICATE fault, bytes that do are a DECODE fault. O(1).
 void aisle_verify_start(aisle_verify *self, const aisle_verify_request *request, aisle_path_msg *decoded);
 
-// Looks at no more than `units` intervals (one unit each; fixed checks count 1 a waypoint and 1 for the rest).
+// Looks at no more than `units` intervals (one unit each; fixed checks count 1 a waypoint, 1 a step along the base and 1 for the
+// rest).
 // AISLE_BUSY;
 // AISLE_OK: proved, *stamp written; AISLE_ERR_DATA: fault says why, *stamp zeroed (as with AISLE_BUSY). *spent is
 // added to.

@@ -40,15 +40,38 @@ static double trapezoid_peak(double way, double time, double up, double down) {
     return 2.0 * way / (time + sqrt(aisle_max(root, 0.0)));
 }
 
-void aisle_verify_time_piece(const aisle_verify *self, uint32_t i, double dwell, aisle_verify_piece *piece) {
-    const aisle_waypoint_msg *from = &self->path->waypoints[i - 1], *to = &self->path->waypoints[i];
-    const aisle_vehicle *vehicle = self->request.vehicle;
+void aisle_verify_time_piece(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                             double dwell, bool most, aisle_verify_piece *piece) {
     piece->time = (double)to->t - (double)from->t - dwell;
     piece->peak = aisle_max((double)from->v, (double)to->v);
     if (!piece->on_spot && is_at_rest(from) && is_at_rest(to)) {
-        double time = aisle_max(piece->time, 0.0) + rounding(to->t);
+        double time = most ? piece->time - rounding(to->t) : aisle_max(piece->time, 0.0) + rounding(to->t);
         piece->peak = time > 0.0 ? trapezoid_peak(piece->length, time, vehicle->a_max, vehicle->d_max) : DBL_MAX;
     }
+}
+
+// Up at a_max to the peak, down at d_max from it, where the piece is at rest at both ends.
+double aisle_verify_speed_square(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                                 const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way) {
+    const double left = aisle_max(piece->length - way, 0.0), v0 = (double)from->v, v1 = (double)to->v;
+    AISLE_ASSERT(!piece->on_spot && way >= 0.0);
+    if (!is_at_rest(from) || !is_at_rest(to)) {
+        return v0 * v0 + (v1 * v1 - v0 * v0) * aisle_min(way / piece->length, 1.0); // length > VERIFY_SAME_PLACE
+    }
+    const double ramps = 2.0 * aisle_min(vehicle->a_max * way, vehicle->d_max * left);
+    return piece->peak < sqrt(ramps) ? piece->peak * piece->peak : ramps;
+}
+
+double aisle_verify_speed_bend(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                               const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way) {
+    if (!is_at_rest(from) || !is_at_rest(to)) {
+        return piece->length;
+    }
+    const double up = vehicle->a_max, down = vehicle->d_max, middle = piece->length * down / (up + down);
+    const double square = 2.0 * up * middle; // that of the triangle
+    const double peak = piece->peak < sqrt(square) ? piece->peak * piece->peak : square;
+    const double first = 0.5 * peak / up, second = piece->length - 0.5 * peak / down;
+    return way < first ? first : (way < second ? second : piece->length);
 }
 
 static bool turn_time_fits(const aisle_vehicle *vehicle, const aisle_verify_piece *piece, double slack) {
@@ -153,7 +176,7 @@ static aisle_verify_fault heading_fault(const aisle_verify *self, uint32_t i) {
     if (self->request.vehicle->drive != AISLE_VEHICLE_OMNI) {
         return heads_along(piece) ? AISLE_VERIFY_NONE : AISLE_VERIFY_HEADING;
     }
-    bool ok = is_at_rest(&self->path->waypoints[i - 1]) ||
+    bool ok = i == 1 || is_at_rest(&self->path->waypoints[i - 1]) || // where it begins in motion the base tells
               is_near(self->along, aisle_verify_piece_direction(piece, false), 2.0 * VERIFY_HEADING);
     return ok ? AISLE_VERIFY_NONE : AISLE_VERIFY_HEADING;
 }
@@ -192,8 +215,9 @@ static bool numbers_are_fit(const aisle_waypoint_msg *w) {
 
 static bool must_rest(const aisle_verify *self, uint32_t i) {
     const aisle_waypoint_msg *w = &self->path->waypoints[i];
-    bool end = i == 0 || i + 1 == (uint32_t)self->path->num_waypoints;
-    return end || has(w, AISLE_WAYPOINT_STOP) || has(w, AISLE_WAYPOINT_TURN_IN_PLACE);
+    bool fast_start = i == 0 && (double)w->v > self->request.v_start * (1.0 + (double)FLT_EPSILON);
+    bool end = i + 1 == (uint32_t)self->path->num_waypoints;
+    return fast_start || end || has(w, AISLE_WAYPOINT_STOP) || has(w, AISLE_WAYPOINT_TURN_IN_PLACE);
 }
 
 aisle_verify_fault aisle_verify_waypoint_fault(const aisle_verify *self, uint32_t i) {

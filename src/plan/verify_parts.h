@@ -29,9 +29,23 @@ aisle_vec2 aisle_verify_piece_origin(const aisle_verify_piece *piece, double u);
 // Direction the origin moves in at the first (end false) or last point, rad, not wrapped.
 double aisle_verify_piece_direction(const aisle_verify_piece *piece, bool end);
 
+// ---- verify.c
+// Takes the next piece in hand; there must be one.
+void aisle_verify_next_piece(aisle_verify *self);
+
 // ---- verify_limits.c
-// Fills time and peak of piece i; dwell (s) is spent at rest before it.
-void aisle_verify_time_piece(const aisle_verify *self, uint32_t i, double dwell, aisle_verify_piece *piece);
+// Fills time and peak of the piece between two waypoints; dwell (s) is spent at rest before it. What their times may be
+// off as floats counts towards the least peak, or with `most` towards the greatest.
+void aisle_verify_time_piece(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                             double dwell, bool most, aisle_verify_piece *piece);
+
+// Square of the speed (m2/s2) `way` m behind the first end of a piece that moves and is timed.
+double aisle_verify_speed_square(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                                 const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way);
+
+// Up to where (m from the first end, > way) that square is linear in the way.
+double aisle_verify_speed_bend(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                               const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way);
 
 // What is wrong with waypoint i taken alone.
 aisle_verify_fault aisle_verify_waypoint_fault(const aisle_verify *self, uint32_t i);
@@ -42,6 +56,16 @@ aisle_verify_fault aisle_verify_piece_fault(const aisle_verify *self, uint32_t i
 // ---- verify_zones.c
 // Does self->piece move against a DIRECTED zone inside it? fault_id and fault_at say where.
 aisle_verify_fault aisle_verify_direction_fault(aisle_verify *self);
+
+// ---- verify_base.c
+// Stands both walkers at the place where the new path begins, its first piece in hand.
+void aisle_verify_base_begin(aisle_verify *self);
+
+// One step along the base. AISLE_OK: it is kept; AISLE_BUSY; AISLE_ERR_DATA: it is not, self->at and fault_at say where.
+aisle_status aisle_verify_base_step(aisle_verify *self);
+
+// Digest of all that a base is.
+uint64_t aisle_verify_base_digest(uint64_t digest, const aisle_verify_base *base);
 
 // ---- verify_motion.c
 // Takes the whole of self->piece in hand.
