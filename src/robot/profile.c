@@ -96,12 +96,14 @@ static bool path_is_fit(const aisle_waypoint_msg *w, uint32_t n, const float *dw
 // In motion it may begin only where nothing asks it to rest.
 static bool start_is_fit(const aisle_waypoint_msg *w, uint32_t n, const float *dwell,
                          const aisle_profile_start *start) {
-    if (!(start->v >= 0.0 && start->v <= AISLE_VEHICLE_SPEED_MAX && start->cap > 0.0 && start->cap_length >= 0.0)) {
-        return false;
+    for (uint32_t i = 0; start->most != NULL && i < n; i++) {
+        if (!(start->most[i] >= 0.0F)) {
+            return false;
+        }
     }
     const bool rests =
         n == 1 || has(&w[0], AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE) || (dwell != NULL && dwell[0] > 0.0F);
-    return !rests || !(start->v > 0.0);
+    return start->v >= 0.0 && start->v <= (rests ? 0.0 : AISLE_VEHICLE_SPEED_MAX);
 }
 
 // ---- limits of pieces
@@ -215,22 +217,22 @@ static void lower(float *v, float v0, double acceleration, float length) {
     }
 }
 
-// What the cap allows `s` m behind the start: itself, or what braking at once leaves. Rounded so that braking suffices.
-static float cap_at(const aisle_vehicle *vehicle, const aisle_profile_start *start, double s) {
-    const double v2 = start->v * start->v - 2.0 * vehicle->d_max * s;
+// `most`, or what braking at once leaves after s m: rounded up, so that the brakes suffice.
+static float bound_or_braked(const aisle_vehicle *vehicle, double v, double s, float most) {
+    const double v2 = v * v - 2.0 * vehicle->d_max * s;
     const double braked = v2 > 0.0 ? sqrt(v2) : 0.0;
-    return braked > start->cap ? aisle_float_above(braked) : aisle_float_below(start->cap);
+    return braked > (double)most ? aisle_float_above(braked) : most;
 }
 
-static void bound_by_cap(const aisle_vehicle *vehicle, const aisle_profile_start *start, aisle_waypoint_msg *w,
-                         uint32_t n) {
+static void bound_by_most(const aisle_vehicle *vehicle, const aisle_profile_start *start, aisle_waypoint_msg *w,
+                          uint32_t n) {
     double s = 0.0;
-    for (uint32_t i = 1; i < n && s < start->cap_length; i++) {
-        const float over = cap_at(vehicle, start, s);
-        w[i].a = w[i].a < over ? w[i].a : over; // of a piece from rest to rest
+    for (uint32_t i = 1; start->most != NULL && i < n; i++) {
+        const float either = start->most[i - 1] > start->most[i] ? start->most[i - 1] : start->most[i];
+        w[i].a = w[i].a < either ? w[i].a : either; // of a piece from rest to rest
         s += (double)w[i].s;
-        const float end = cap_at(vehicle, start, s);
-        w[i].v = w[i].v < end ? w[i].v : end;
+        const float most = bound_or_braked(vehicle, start->v, s, start->most[i]);
+        w[i].v = w[i].v < most ? w[i].v : most;
     }
 }
 
@@ -243,11 +245,11 @@ static void bound_accelerations(const aisle_vehicle *vehicle, aisle_waypoint_msg
     }
 }
 
-// Is what follows within reach of the brakes? Rounding may have cost the first speed a step or two.
-static bool take_start(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n) {
+// Lowers the first speed to what can be braked to what follows. False if by more than rounding.
+static bool fit_start(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n, float limit) {
     const float told = w[0].v;
     if (n > 1 && told > 0.0F) {
-        w[0].v = told < w[1].a ? told : w[1].a;
+        w[0].v = told < limit ? told : limit;
         lower(&w[0].v, w[1].v, vehicle->d_max, w[1].s);
     }
     return (double)w[0].v >= (double)told * (1.0 - START_TOLERANCE);
@@ -333,7 +335,7 @@ static aisle_status lay_out(const aisle_vehicle *vehicle, aisle_waypoint_msg *w,
 
 aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                 uint32_t n, const float *dwell, aisle_profile_sum *sum) {
-    static const aisle_profile_start at_rest = {0.0, AISLE_VEHICLE_SPEED_MAX, 0.0};
+    static const aisle_profile_start at_rest = {0.0, NULL};
     return aisle_profile_fill_moving(vehicle, layout, w, n, dwell, &at_rest, sum);
 }
 
@@ -347,12 +349,12 @@ aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle
     AISLE_ASSERT(vehicle->v_max > 0.0 && vehicle->v_reverse_max > 0.0 && vehicle->creep_speed > 0.0);
     AISLE_ASSERT(vehicle->a_max > 0.0 && vehicle->d_max > 0.0 && vehicle->omega_max > 0.0 && vehicle->alpha_max > 0.0);
     bound_pieces(vehicle, layout, w, n);
+    const float limit = n > 1 ? w[1].a : 0.0F; // before most
     bound_waypoints(w, n);
-    bound_by_cap(vehicle, start, w, n);
+    bound_by_most(vehicle, start, w, n);
     w[0].v = aisle_float_below(start->v);
     bound_accelerations(vehicle, w, n);
-    if (!take_start(vehicle, w, n)) {
-        return AISLE_ERR_DATA;
-    }
-    return lay_out(vehicle, w, n, dwell, sum);
+    const bool is_fit = fit_start(vehicle, w, n, limit);
+    const aisle_status st = lay_out(vehicle, w, n, dwell, sum);
+    return st == AISLE_OK && !is_fit ? AISLE_PARTIAL : st;
 }

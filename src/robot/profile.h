@@ -68,22 +68,21 @@ typedef struct aisle_profile_sum {
 aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                 uint32_t n, const float *dwell, aisle_profile_sum *sum);
 
-// How a path begins that is under way already.
+// How a path begins that is under way already, and how fast it is to be.
 typedef struct aisle_profile_start {
     double v;          // m/s, of the first waypoint, in [0, AISLE_VEHICLE_SPEED_MAX]
-    double cap;        // m/s, > 0, may be INFINITY
-    double cap_length; // m, >= 0: over so much of the path it is no faster than cap
+    const float *most; // [n] m/s >= 0, may be INFINITY; NULL: no such bounds
 } aisle_profile_start;
 
-// The same for a path whose first waypoint is in motion (start->v > 0), or that is to be slow at first. Of pieces that
-// begin within cap_length, both ends are at most at cap or, where braking at once from start->v leaves no choice, at the
-// speed it leaves, sqrt(v^2 - 2 d_max s). For braking to end where it can, the caller cuts a piece where that speed is
-// cap. The first waypoint's REVERSE is not looked at. Its v is start->v rounded down; where rounding (1e-6 relative) lets
-// the brakes not quite suffice, as much less.
+// The same for a path whose first waypoint is in motion (start->v > 0) or that is not to be as fast as it could. Each
+// waypoint but the first is at most at its `most` or, where braking at once from start->v leaves no choice, at the speed
+// it leaves, sqrt(v^2 - 2 d_max s). A piece from rest to rest keeps to the greater `most` of its ends. For braking to end
+// where it can, the caller cuts a piece where that speed is `most`. The first waypoint's REVERSE is not looked at; its v is
+// start->v rounded down, or less by a relative 1e-6 where rounding lets the brakes not quite suffice.
 //
 // Beside the answers of aisle_profile_fill(): AISLE_ERR_ARG, nothing changed: start NULL or out of range; in motion, but
-// the first waypoint carries STOP or TURN_IN_PLACE, has a dwell or is the only one. AISLE_ERR_DATA: too fast for what
-// follows, even braking with d_max; s, t, v, a are undefined then, all else is unchanged.
+// the first waypoint carries STOP or TURN_IN_PLACE, has a dwell or is the only one. AISLE_PARTIAL: all is filled, but
+// start->v is too fast for what follows even if it brakes with d_max: the first v is as much as is not.
 aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                        uint32_t n, const float *dwell, const aisle_profile_start *start,
                                        aisle_profile_sum *sum);
