@@ -35,11 +35,10 @@ static void row(aisle_planner *self, const aisle_arena *arena, size_t *from, con
 }
 
 // One walk for measuring and carving. The planner and the structs with carve functions of their own come first, so that
-// in a measuring walk stand-ins on the caller's side take the pointers.
+// in a measuring walk stand-ins on the caller's side take the pointers; the route, too large for the stack, needs none.
 typedef struct stand_ins {
     aisle_planner planner;
     aisle_layout layout;
-    aisle_route route;
 } stand_ins;
 
 static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits, stand_ins *instead) {
@@ -49,13 +48,13 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits, stan
     aisle_route *route = (aisle_route *)aisle_arena_take(arena, 1U, sizeof(aisle_route));
     self = self != NULL ? self : &instead->planner;
     self->layout = layout != NULL ? layout : &instead->layout;
-    self->route = route != NULL ? route : &instead->route;
+    self->route = route;
     row(self, arena, &from, "planner");
     aisle_layout_carve(self->layout, arena, limits);
     row(self, arena, &from, "layout and grid");
-    aisle_route_carve(self->route, arena, limits);
+    aisle_route_carve(route, arena, limits);
     row(self, arena, &from, "search and paths");
-    aisle_route_carve_cache(self->route, arena, limits);
+    aisle_route_carve_cache(route, arena, limits);
     row(self, arena, &from, "remembered paths");
     self->queue = (aisle_request *)aisle_arena_take(arena, limits->requests, sizeof(aisle_request));
     row(self, arena, &from, "requests");

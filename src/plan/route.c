@@ -4,42 +4,76 @@
 
 #include <string.h>
 
+// While measuring there is no route: its parts are carved one after the other into this.
+typedef union part {
+    aisle_space space;
+    aisle_tangent tangent;
+    aisle_manoeuvre manoeuvre;
+    aisle_tour tour;
+    aisle_seed seed;
+    aisle_swarm swarm;
+    aisle_paper_swarm paper;
+    aisle_compose compose;
+} part;
+
+#define PART(self, instead, name) ((self) != NULL ? &(self)->name : &(instead)->name)
+
 // No leg is searched two ways at a time: the tangent search and that of manoeuvres lie where the grid search does. Nor
 // is anything searched while an order is computed.
-static void carve_searches(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
     aisle_arena shared[3] = {*arena, *arena, *arena};
-    aisle_tangent_carve(&self->tangent, &shared[0], limits);
-    aisle_manoeuvre_carve(&self->manoeuvre, &shared[1], limits);
-    aisle_tour_carve_shared(&self->tour, &shared[2]);
-    aisle_seed_carve(&self->seed, arena, limits);
+    aisle_tangent_carve(PART(self, instead, tangent), &shared[0], limits);
+    aisle_manoeuvre_carve(PART(self, instead, manoeuvre), &shared[1], limits);
+    aisle_tour_carve_shared(PART(self, instead, tour), &shared[2]);
+    aisle_seed_carve(PART(self, instead, seed), arena, limits);
     for (uint32_t i = 0; i < 3U; i++) {
         arena->overflow = arena->overflow || shared[i].overflow;
         arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
     }
 }
 
-void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_space_carve(&self->space, arena, limits->cells);
-    carve_searches(self, arena, limits);
-    aisle_tour_carve(&self->tour, arena);
-    aisle_swarm_carve(&self->swarm, arena);
-    aisle_paper_swarm_carve(&self->paper, arena);
-    aisle_compose_carve(&self->compose, arena);
-    self->points = // and one for each leg that begins at its goal
-        (aisle_vec2 *)aisle_arena_take(arena, AISLE_ROUTE_POINTS + AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_vec2));
-    for (uint32_t i = 0; i < 2U; i++) {
-        self->guide[i].points = (aisle_vec2 *)aisle_arena_take(arena, AISLE_SEED_POINTS_MAX, sizeof(aisle_vec2));
+static void carve_buffers(aisle_route *self, aisle_arena *arena) {
+    void *points = // and one for each leg that begins at its goal
+        aisle_arena_take(arena, AISLE_ROUTE_POINTS + AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_vec2));
+    void *guide[2];
+    guide[0] = aisle_arena_take(arena, AISLE_SEED_POINTS_MAX, sizeof(aisle_vec2));
+    guide[1] = aisle_arena_take(arena, AISLE_SEED_POINTS_MAX, sizeof(aisle_vec2));
+    void *pieces = aisle_arena_take(arena, AISLE_ROUTE_PIECES, sizeof(aisle_waypoint_msg));
+    void *legs = aisle_arena_take(arena, AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_leg));
+    void *path = aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    void *decoded = aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    void *best = aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    void *spare = aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    if (self == NULL) {
+        return;
     }
-    self->pieces = (aisle_waypoint_msg *)aisle_arena_take(arena, AISLE_ROUTE_PIECES, sizeof(aisle_waypoint_msg));
-    self->legs = (aisle_leg *)aisle_arena_take(arena, AISLE_GOAL_LIST_MAX_GOALS, sizeof(aisle_leg));
-    self->path = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
-    self->decoded = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
-    self->best.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
-    self->spare.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    self->points = (aisle_vec2 *)points;
+    self->guide[0].points = (aisle_vec2 *)guide[0];
+    self->guide[1].points = (aisle_vec2 *)guide[1];
+    self->pieces = (aisle_waypoint_msg *)pieces;
+    self->legs = (aisle_leg *)legs;
+    self->path = (aisle_path_msg *)path;
+    self->decoded = (aisle_path_msg *)decoded;
+    self->best.bytes = (uint8_t *)best;
+    self->spare.bytes = (uint8_t *)spare;
+}
+
+void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+    part measured;
+    memset(&measured, 0, sizeof measured);
+    part *instead = &measured;
+    aisle_space_carve(PART(self, instead, space), arena, limits->cells);
+    carve_searches(self, instead, arena, limits);
+    aisle_tour_carve(PART(self, instead, tour), arena);
+    aisle_swarm_carve(PART(self, instead, swarm), arena);
+    aisle_paper_swarm_carve(PART(self, instead, paper), arena);
+    aisle_compose_carve(PART(self, instead, compose), arena);
+    carve_buffers(self, arena);
 }
 
 void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_cache_carve(&self->cache, arena, limits);
+    aisle_cache measured = {0};
+    aisle_cache_carve(self != NULL ? &self->cache : &measured, arena, limits);
 }
 
 // Header of the answer: everything but waypoints and sums.

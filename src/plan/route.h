@@ -187,6 +187,7 @@ typedef struct aisle_route {
     uint32_t told_count;
 } aisle_route;
 
+// `self` may be NULL, to measure only: then no pointer is kept, and no struct of this size is needed.
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 
