@@ -82,8 +82,7 @@ void aisle_planner_publish(aisle_planner *self, const aisle_request *request, co
         return;
     }
     aisle_mission *mission = &self->mission;
-    AISLE_ASSERT(mission->request.num_goals == request->num_goals);
-    memcpy(mission->request.goals, request->goals, sizeof request->goals);
+    aisle_mission_take_order(mission, request);
     memcpy(mission->current.bytes, proof->bytes, proof->size);
     mission->current.size = proof->size;
     mission->current.stamp = proof->stamp;

@@ -23,19 +23,6 @@ static bool stop_is_bad(const aisle_goal_msg *stop) {
            !within(stop->y, -DBL_MAX, DBL_MAX);
 }
 
-bool aisle_planner_order_is_bad(int8_t ordering, const aisle_goal_msg *goals, int16_t count, int32_t *id) {
-    *id = 0;
-    for (int16_t i = 0; i < count && ordering == AISLE_GOAL_LIST_ANY_ORDER; i++) {
-        for (int16_t k = 0; k < i; k++) {
-            if (goals[k].id == goals[i].id) {
-                *id = goals[i].id;
-                return true;
-            }
-        }
-    }
-    return ordering != AISLE_GOAL_LIST_ORDERED && ordering != AISLE_GOAL_LIST_ANY_ORDER;
-}
-
 // Numbers no vehicle can mean: the goal's id, 0 for the start or their count.
 static bool is_malformed(const aisle_request *request, int32_t *id) {
     *id = 0;
@@ -48,7 +35,7 @@ static bool is_malformed(const aisle_request *request, int32_t *id) {
             return true;
         }
     }
-    return aisle_planner_order_is_bad(request->ordering, request->goals, request->num_goals, id);
+    return aisle_mission_order_is_bad(request->ordering, request->goals, request->num_goals, id);
 }
 
 // What keeps anyone from driving by the pose at hand, its age left out.

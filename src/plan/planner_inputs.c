@@ -18,8 +18,12 @@ static aisle_status duplicate(aisle_planner *self) {
     return AISLE_OK;
 }
 
+static bool queue_is_full(const aisle_planner *self) {
+    return self->queue_count >= self->config.limits.requests;
+}
+
 static aisle_status enqueue(aisle_planner *self, const aisle_request *request) {
-    if (self->queue_count >= self->config.limits.requests) {
+    if (queue_is_full(self)) {
         return AISLE_BUSY;
     }
     uint32_t at = (self->queue_head + self->queue_count) % self->config.limits.requests;
@@ -108,30 +112,6 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
 
 // ---- pose
 
-// Is the path in hand the one for the goals in hand?
-static bool drives_to_its_goals(const aisle_mission *mission) {
-    return mission->wanted && mission->has_path && mission->path->goal_list_id == mission->list_id &&
-           mission->path->goal_list_revision == mission->list_revision;
-}
-
-static void note_progress(aisle_planner *self) {
-    aisle_mission *mission = &self->mission;
-    while (drives_to_its_goals(mission) && mission->reached < (uint32_t)mission->request.num_goals) {
-        const aisle_goal_msg *goal = &mission->request.goals[mission->reached];
-        double away = aisle_vec2_distance(aisle_vec2_of(self->pose.x, self->pose.y), aisle_vec2_of(goal->x, goal->y));
-        double tolerance = goal->tolerance_xy > 0.0F ? (double)goal->tolerance_xy : 0.05;
-        bool rests = fabs((double)self->pose.vx) < 0.01 && fabs((double)self->pose.omega) < 0.01;
-        if (away > tolerance || !rests) {
-            return;
-        }
-        mission->reached++;
-        if (mission->reached == (uint32_t)mission->request.num_goals) {
-            mission->wanted = false;
-            mission->has_path = false;
-        }
-    }
-}
-
 // A mission refused for want of a pose is planned when there is one.
 static void try_refused_mission(aisle_planner *self) {
     const aisle_mission *mission = &self->mission;
@@ -159,7 +139,7 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
     self->pose = *msg;
     self->pose_at_us = self->now_us;
     self->has_pose = true;
-    note_progress(self);
+    aisle_mission_note_pose(&self->mission, msg);
     try_refused_mission(self);
     return AISLE_OK;
 }
@@ -185,85 +165,28 @@ static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) 
     return enqueue(self, &request);
 }
 
-static aisle_goal_msg pose_as_start(const aisle_planner *self) {
-    return (aisle_goal_msg){.x = self->pose.x, .y = self->pose.y, .theta = self->pose.theta};
-}
-
-static uint32_t digest_part(uint32_t crc, aisle_msg_type type, const void *part) {
-    uint8_t bytes[128];
-    size_t size = 0;
-    aisle_status st = aisle_msg_encode_body(type, part, bytes, sizeof bytes, &size);
-    return st == AISLE_OK ? aisle_crc32(crc, bytes, size) : ~crc; // not finite: refused when its turn comes
-}
-
-static uint32_t digest_of(const aisle_goal_list_msg *msg) {
-    uint32_t crc = digest_part(0, AISLE_MSG_OPTIONS, &msg->options);
-    for (int16_t i = 0; i < msg->num_goals; i++) {
-        crc = digest_part(crc, AISLE_MSG_GOAL, &msg->goals[i]);
-    }
-    const uint8_t rest[] = {(uint8_t)msg->num_goals, (uint8_t)msg->ordering};
-    crc = aisle_crc32(crc, rest, sizeof rest);
-    return crc ^ (uint32_t)msg->map_id;
-}
-
-static aisle_status cancel_mission(aisle_planner *self) {
+static void cancel_mission(aisle_planner *self) {
     aisle_planner_revoke(self, 0, 0);
-    self->mission.wanted = false;
-    self->mission.has_path = false;
-    self->mission.replan = false;
-    return AISLE_OK;
-}
-
-static aisle_status begin_mission(aisle_planner *self, const aisle_goal_list_msg *msg) {
-    aisle_request request = {.goal_list_id = msg->goal_list_id,
-                             .goal_list_revision = msg->goal_list_revision,
-                             .map_id = msg->map_id,
-                             .pose_utime = self->has_pose ? self->pose.utime : 0,
-                             .start = pose_as_start(self),
-                             .options = msg->options,
-                             .ordering = msg->ordering,
-                             .num_goals = msg->num_goals};
-    memcpy(request.goals, msg->goals, (size_t)msg->num_goals * sizeof msg->goals[0]);
-    aisle_status st = enqueue(self, &request);
-    if (st == AISLE_OK) {
-        aisle_mission *mission = &self->mission;
-        mission->request = request;
-        mission->wanted = true;
-        mission->replan = false;
-        mission->reached = 0;
-        mission->cause = 0;
-    }
-    return st;
+    aisle_mission_cancel(&self->mission);
 }
 
 static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *msg) {
-    if (count_is_bad(msg->num_goals)) {
-        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->num_goals);
-    }
-    int32_t id;
-    if (msg->num_goals > 0 && aisle_planner_order_is_bad(msg->ordering, msg->goals, msg->num_goals, &id)) {
-        return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, id);
-    }
     aisle_mission *mission = &self->mission;
-    uint32_t digest = digest_of(msg);
-    if (mission->known && mission->list_id == msg->goal_list_id) {
-        if (msg->goal_list_revision < mission->list_revision) {
-            return aisle_planner_reject(self, AISLE_STATUS_OUTDATED, msg->goal_list_revision);
-        }
-        if (msg->goal_list_revision == mission->list_revision) {
-            return digest == mission->digest
-                       ? duplicate(self)
-                       : aisle_planner_reject(self, AISLE_STATUS_CONFLICT, msg->goal_list_revision);
-        }
+    aisle_refusal why;
+    const aisle_status st = aisle_mission_judge(mission, msg, &why);
+    if (st == AISLE_ERR_DATA) {
+        return aisle_planner_reject(self, why.cause, why.id);
     }
-    aisle_status st = msg->num_goals == 0 ? cancel_mission(self) : begin_mission(self, msg);
-    if (st == AISLE_OK) {
-        mission->known = true;
-        mission->list_id = msg->goal_list_id;
-        mission->list_revision = msg->goal_list_revision;
-        mission->digest = digest;
+    if (st == AISLE_PARTIAL) {
+        return duplicate(self);
     }
-    return st;
+    if (msg->num_goals == 0) {
+        aisle_planner_revoke(self, 0, 0);
+    } else if (queue_is_full(self)) {
+        return AISLE_BUSY;
+    }
+    aisle_mission_take(mission, msg);
+    return msg->num_goals == 0 ? AISLE_OK : enqueue(self, aisle_planner_renew_request(self));
 }
 
 void aisle_planner_replan(aisle_planner *self) {
@@ -271,15 +194,7 @@ void aisle_planner_replan(aisle_planner *self) {
 }
 
 const aisle_request *aisle_planner_renew_request(aisle_planner *self) {
-    aisle_mission *mission = &self->mission;
-    aisle_request *request = &mission->request;
-    uint32_t left = (uint32_t)request->num_goals - mission->reached;
-    memmove(request->goals, request->goals + mission->reached, left * sizeof request->goals[0]);
-    request->num_goals = (int16_t)left;
-    request->start = pose_as_start(self);
-    request->pose_utime = self->has_pose ? self->pose.utime : 0;
-    mission->reached = 0;
-    return request;
+    return aisle_mission_ask(&self->mission, self->has_pose ? &self->pose : NULL);
 }
 
 // ---- obstacles and commands
@@ -313,7 +228,7 @@ static aisle_status take_command(aisle_planner *self, const aisle_command_msg *m
         self->lease_due_us = self->now_us;
         break;
     case AISLE_COMMAND_CANCEL:
-        (void)cancel_mission(self);
+        cancel_mission(self);
         break;
     case AISLE_COMMAND_RESEND:
         self->lease_due_us = self->now_us;

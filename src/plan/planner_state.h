@@ -7,7 +7,7 @@
 #define AISLE_PLAN_PLANNER_STATE_H
 
 #include "aisle/planner.h"
-#include "plan/route.h"
+#include "plan/mission.h"
 
 #define AISLE_REFUSAL_BYTES 1024U // of an encoded path_t with at most AISLE_ROUTE_TOLD_MAX waypoints
 #define AISLE_MEMORY_ROWS 8U
@@ -18,21 +18,6 @@ typedef struct aisle_outgoing { // a path_t waiting to be pulled
     const aisle_stamp *stamp; // NULL: a refusal, nothing to drive
     bool waiting;
 } aisle_outgoing;
-
-typedef struct aisle_mission {      // the goal list in hand
-    aisle_request request;          // with the goals not yet reached when it was planned last
-    bool known;                     // a list has come; what names it stays when it is reached or cancelled
-    int32_t list_id, list_revision; // of the newest
-    uint32_t digest;                // of all in it but its utime: a duplicate or a conflict?
-    bool wanted;                    // neither reached nor cancelled yet
-    bool replan;                    // to be planned again from the present pose, after what waits
-    bool has_path;                  // current holds its proved path
-    aisle_proof current;
-    aisle_path_msg *path; // current, decoded
-    uint32_t reached;     // goals
-    int16_t cause;        // why the last plan gave no path, or the path was revoked; 0: being planned
-    int32_t cause_id;
-} aisle_mission;
 
 struct aisle_planner {
     aisle_config config; // limits resolved
@@ -70,8 +55,6 @@ struct aisle_planner {
 // planner_hindrance.c
 
 bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
-// No such ordering, or goals in any order that share an id (*id; else 0): nobody could tell which one is reached.
-bool aisle_planner_order_is_bad(int8_t ordering, const aisle_goal_msg *goals, int16_t count, int32_t *id);
 // Why a request cannot even begin; cause 0: it can.
 aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request);
 // Why the mission's path must not be driven at now_us; 0: it may. *id: what is meant.

@@ -73,7 +73,7 @@ void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_statu
     if (mission->wanted) {
         status->goal_list_id = mission->request.goal_list_id;
         status->goal_list_revision = mission->request.goal_list_revision;
-        status->goal_id = mission->request.goals[mission->reached].id;
+        status->goal_id = aisle_mission_goal(mission)->id;
     }
     remaining(self, status);
 }
