@@ -118,13 +118,15 @@ static float planning_time(aisle_loop *self, const aisle_event *event) {
     return seconds;
 }
 
-static void send_events(aisle_loop *self) {
+static void send_events(aisle_loop *self, int64_t utime) {
     aisle_event event;
     while (aisle_planner_next_event(self->parts.planner, &event)) {
         AISLE_ASSERT(event.size <= sizeof self->out && event.size > aisle_path_offset("num_waypoints"));
         memcpy(self->out, event.bytes, event.size);
         aisle_path_put_float(self->out, "planning_time", planning_time(self, &event));
-        publish(self, event.kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY, self->out, event.size);
+        const aisle_channel channel = event.kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY;
+        publish(self, channel, self->out, event.size);
+        aisle_record_message(self->parts.record, utime, channel, self->out, event.size);
         self->progress = true;
     }
 }
@@ -196,7 +198,11 @@ static aisle_status take(aisle_loop *self, const aisle_inbox_message *message) {
         aisle_inbox_pop(inbox, message);
         return AISLE_ERR_DATA;
     }
-    status = aisle_feed_submit(&self->feed, self->parts.planner, aisle_clock_utime(self->parts.clock, now(self)));
+    const int64_t utime = aisle_clock_utime(self->parts.clock, now(self));
+    status = aisle_feed_submit(&self->feed, self->parts.planner, utime);
+    if (status != AISLE_BUSY) {
+        aisle_record_message(self->parts.record, utime, message->channel, message->bytes, message->size);
+    }
     if (status == AISLE_BUSY && self->idle) { // would wait for ever
         self->stuck++;
         note_fault(self, AISLE_STATUS_INTERNAL, AISLE_CAUSE_ID_PLANNER, message->channel,
@@ -263,6 +269,7 @@ static void step(aisle_loop *self) {
     if (self->idle && utime < aisle_planner_next_deadline(self->parts.planner)) {
         return;
     }
+    aisle_record_step(self->parts.record, utime, self->slice);
     aisle_status status = aisle_planner_step(self->parts.planner, utime, self->slice);
     int64_t took = now(self) - start;
     aisle_histogram_add(&self->timers[AISLE_TIMER_STEP], took);
@@ -272,7 +279,7 @@ static void step(aisle_loop *self) {
     int64_t spent = aisle_planner_counters(self->parts.planner)[AISLE_COUNTER_WORK_UNITS];
     self->progress = self->progress || spent != self->work_units_seen;
     self->work_units_seen = spent;
-    send_events(self);
+    send_events(self, utime);
 }
 
 // ---- turns

@@ -27,6 +27,7 @@
 #include "daemon/histogram.h"
 #include "daemon/notify.h"
 #include "daemon/path_bytes.h"
+#include "daemon/record.h"
 #include "daemon/settings.h"
 
 #define AISLE_LOOP_SLICE_US 2000       // aimed at by the chosen slice
@@ -73,6 +74,7 @@ typedef struct aisle_loop_parts {
     aisle_bus *bus;         // open
     aisle_clock *clock;     // started
     aisle_notify *notify;   // open, or of fd -1
+    aisle_record *record;   // open, or NULL
     int stop_fd;            // readable = stop; -1 = never
 } aisle_loop_parts;
 

@@ -18,10 +18,11 @@ enum { EXIT_OK = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
 
 static const char help[] =
     "aisled plans motion for an automated guided vehicle: LCM messages in, proved paths out.\n"
-    "usage: aisled [--config FILE] [--lcm-url URL] [--prefix NAME]\n"
+    "usage: aisled [--config FILE] [--lcm-url URL] [--prefix NAME] [--record FILE]\n"
     "  --config FILE    settings (see aisled.ini); without it all is at its default\n"
     "  --lcm-url URL    the bus, e.g. udpm://239.255.76.67:7667?ttl=1; goes before [bus] url\n"
     "  --prefix NAME    of every channel, AISLE by default; goes before [bus] prefix\n"
+    "  --record FILE    a log of all that is taken and answered; aisle-replay gives the same bytes from it\n"
     "  --check-config   say whether the settings are good, and end\n"
     "  --memory         print the bytes of every pool with these settings, and end\n"
     "  --version        print the version, and end\n"
@@ -29,7 +30,7 @@ static const char help[] =
     "Ends with 0 when stopped by SIGTERM or SIGINT, 1 on trouble, 2 on wrong options or settings.\n";
 
 typedef struct arguments {
-    const char *config, *url, *prefix;
+    const char *config, *url, *prefix, *record;
     bool check_config, memory, version, help;
 } arguments;
 
@@ -41,6 +42,7 @@ static struct {
     aisle_bus bus;
     aisle_clock clock;
     aisle_notify notify;
+    aisle_record record;
     aisle_loop loop;
 } daemon_state;
 
@@ -80,7 +82,7 @@ static bool parse(arguments *out, int argc, char **argv, char *message) {
         {"--config", NULL, &out->config}, {"--lcm-url", NULL, &out->url},
         {"--prefix", NULL, &out->prefix}, {"--check-config", &out->check_config, NULL},
         {"--memory", &out->memory, NULL}, {"--version", &out->version, NULL},
-        {"--help", &out->help, NULL},
+        {"--record", NULL, &out->record}, {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, NULL, 0, &plain, message);
@@ -110,7 +112,11 @@ static bool lock_memory(void) {
 #endif
 }
 
-static int run(void) {
+static int64_t utime_now(void) {
+    return aisle_clock_utime(&daemon_state.clock, aisle_clock_monotonic(&daemon_state.clock));
+}
+
+static int run(const char *record) {
     const aisle_settings *settings = &daemon_state.settings;
     if (!catch_signals()) {
         return complain(EXIT_TROUBLE, "signals cannot be caught");
@@ -122,6 +128,9 @@ static int run(void) {
     aisle_clock_start(&daemon_state.clock, aisle_clock_of_host());
     (void)aisle_notify_open(&daemon_state.notify, getenv("NOTIFY_SOCKET"), getenv("WATCHDOG_USEC"),
                             getenv("WATCHDOG_PID"));
+    if (!aisle_record_open(&daemon_state.record, record, settings->prefix, utime_now())) {
+        return complain(EXIT_TROUBLE, "--record: the file cannot be written");
+    }
     if (aisle_bus_open(&daemon_state.bus, settings->url, settings->prefix, &daemon_state.inbox) != AISLE_OK) {
         return complain(EXIT_TROUBLE, "the bus cannot be joined; is there a multicast route? see --lcm-url");
     }
@@ -131,10 +140,12 @@ static int run(void) {
                                                             .bus = &daemon_state.bus,
                                                             .clock = &daemon_state.clock,
                                                             .notify = &daemon_state.notify,
+                                                            .record = &daemon_state.record,
                                                             .stop_fd = stop_pipe[0]});
     aisle_loop_end end = aisle_loop_run(&daemon_state.loop);
     aisle_bus_close(&daemon_state.bus);
     aisle_notify_close(&daemon_state.notify);
+    aisle_record_close(&daemon_state.record);
     return end == AISLE_LOOP_STOPPED ? EXIT_OK : complain(EXIT_TROUBLE, "the bus broke");
 }
 
@@ -155,7 +166,7 @@ static int start(const arguments *given) {
     } else if (given->memory) {
         code = aisle_engine_print_memory(&daemon_state.engine, sizeof daemon_state, stdout) ? EXIT_OK : EXIT_TROUBLE;
     } else {
-        code = run();
+        code = run(given->record);
     }
     aisle_engine_stop(&daemon_state.engine);
     return code;

@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "daemon/engine.h"
 #include "daemon/options.h"
+#include "daemon/record.h"
 #include "replay/bench.h"
 #include "replay/check.h"
 #include "replay/report.h"
@@ -105,6 +106,13 @@ static void on_output(void *ctx, const aisle_replay_output *output) {
 }
 
 static void handle(const aisle_log_event *event) {
+    uint32_t units;
+    if (aisle_record_is_step(tool.settings.prefix, event->channel, event->channel_length, event->bytes, event->size,
+                             &units)) {
+        write_event(event->utime, event->channel, event->channel_length, event->bytes, event->size);
+        aisle_replay_step(&tool.replay, event->utime, units);
+        return;
+    }
     aisle_channel channel = aisle_channel_find(tool.settings.prefix, event->channel, event->channel_length);
     if (channel == AISLE_CHANNEL_COUNT) {
         return;

@@ -37,7 +37,7 @@ static void settle(aisle_replay *self) {
 }
 
 void aisle_replay_advance(aisle_replay *self, int64_t utime) {
-    int64_t deadline = aisle_planner_next_deadline(self->planner);
+    int64_t deadline = self->is_stepped ? INT64_MAX : aisle_planner_next_deadline(self->planner);
     while (deadline <= utime) {
         self->now = deadline > self->now ? deadline : self->now;
         settle(self);
@@ -48,6 +48,15 @@ void aisle_replay_advance(aisle_replay *self, int64_t utime) {
     self->now = utime > self->now ? utime : self->now;
 }
 
+void aisle_replay_step(aisle_replay *self, int64_t utime, uint32_t units) {
+    self->is_stepped = true;
+    self->now = utime > self->now ? utime : self->now;
+    if (units > 0U) {
+        (void)aisle_planner_step(self->planner, self->now, units);
+        pull(self);
+    }
+}
+
 void aisle_replay_input(aisle_replay *self, int64_t utime, aisle_channel channel, const void *bytes, size_t size) {
     aisle_replay_advance(self, utime);
     self->inputs++;
@@ -56,10 +65,12 @@ void aisle_replay_input(aisle_replay *self, int64_t utime, aisle_channel channel
         return;
     }
     aisle_status status = aisle_feed_submit(&self->feed, self->planner, self->now);
-    if (status == AISLE_BUSY) { // an idle planner takes everything
+    if (status == AISLE_BUSY && !self->is_stepped) { // an idle planner takes everything
         settle(self);
         status = aisle_feed_submit(&self->feed, self->planner, self->now);
     }
     self->refused += status < 0 || status == AISLE_BUSY ? 1 : 0;
-    settle(self);
+    if (!self->is_stepped) {
+        settle(self);
+    }
 }

@@ -1,4 +1,4 @@
-#include "replay/log.h" // first: proves that the header stands alone
+#include "daemon/log.h" // first: proves that the header stands alone
 
 #include "unity.h"
 

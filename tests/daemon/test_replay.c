@@ -80,12 +80,29 @@ static void test_refused_messages_are_counted_by_who_refused_them(void) {
     TEST_ASSERT_EQUAL_INT64(2, replay.refused);
     TEST_ASSERT_EQUAL(0, num_outputs);
 }
+static void test_a_log_that_tells_its_steps_is_planned_in_them_alone(void) {
+    fake.units_per_request = 30;
+    fake.lease_us = 500000;
+    aisle_replay_step(&replay, 100, 0);
+    TEST_ASSERT_EQUAL_UINT32(0, fake.steps); // says what the log is, no step
+    input(1000, AISLE_CHANNEL_GOALS, 5);
+    aisle_replay_step(&replay, 1001, 20);
+    TEST_ASSERT_EQUAL(0, num_outputs);
+    aisle_replay_step(&replay, 1002, 20);
+    TEST_ASSERT_EQUAL(1, num_outputs);
+    TEST_ASSERT_EQUAL_INT64(1002, outputs[0].utime);
+    aisle_replay_advance(&replay, 9000000); // its leases are steps, too
+    input(9000001, AISLE_CHANNEL_POSE, 1);
+    TEST_ASSERT_EQUAL(1, num_outputs);
+    TEST_ASSERT_EQUAL_UINT32(2, fake.steps);
+}
 
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_each_request_is_answered_before_the_next_input);
     RUN_TEST(test_leases_are_renewed_in_log_time);
     RUN_TEST(test_time_never_runs_backwards);
+    RUN_TEST(test_a_log_that_tells_its_steps_is_planned_in_them_alone);
     RUN_TEST(test_refused_messages_are_counted_by_who_refused_them);
     return UNITY_END();
 }

@@ -8,7 +8,7 @@
 #include "base/crc32.h"
 #include "base/rng.h"
 #include "daemon/channel.h"
-#include "replay/log.h"
+#include "daemon/log.h"
 #include "wire/codec.h"
 #include "world/collide.h"
 #include "world/layout.h"

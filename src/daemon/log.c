@@ -1,4 +1,4 @@
-#include "replay/log.h"
+#include "daemon/log.h"
 
 #include "base/check.h"
 

@@ -5,8 +5,8 @@
 //
 // Memory: the struct. Reading survives anything: garbage is skipped up to the next sync word that begins a plausible
 // event, an event cut off by the end of the file is left out, one too long to be ours is stepped over; all are counted.
-#ifndef AISLE_REPLAY_LOG_H
-#define AISLE_REPLAY_LOG_H
+#ifndef AISLE_DAEMON_LOG_H
+#define AISLE_DAEMON_LOG_H
 
 #include "wire/codec.h"
 
