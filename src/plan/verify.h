@@ -69,7 +69,8 @@
 // - the new path is at most as fast as the old one or v_start, whichever is more (both 1e-6 m off each other at worst, and
 //   what float times leave open in the trapezoid of a piece at rest at both ends counted in favour). Between knots both
 //   squares are linear in the way, so the knots suffice. Rates of turns are not compared: turn times prove themselves.
-// num_base counts the new path's waypoints on the base: those more than 1e-6 m before its end, none more than that behind.
+// num_base counts the new path's waypoints on the base: the first one, those more than 1e-6 m before its end, none more than
+//   that behind; where turns are at its end, those before the turn, or with base.turn those after it.
 // Not proved: the waypoints' clearances, energy, risk and length_bound themselves.
 // Again. What was proved once and is shown with the basis of that proof is not looked at again if nothing of the basis
 // has changed, for the verdict would be the same: only the digests are made anew (one pass over the bytes), and ids,

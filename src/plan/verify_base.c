@@ -82,7 +82,7 @@ static double square_new(const aisle_verify *self, double further) {
     return aisle_verify_speed_square(self->request.vehicle, to - 1, to, &self->piece, self->walk.done_new + further);
 }
 
-// As fast as it was or as v_start lets it, both APART off each other at worst.
+// No faster than it was or than v_start, both APART off each other at worst.
 static bool is_slow_enough(const aisle_verify *self, double further) {
     const aisle_vehicle *vehicle = self->request.vehicle;
     const double v_start = self->request.v_start, more = 1.0 + VERIFY_TOLERANCE;
@@ -131,12 +131,18 @@ static aisle_status finish(aisle_verify *self, uint32_t passed) {
     return told >= walk->counted && told <= passed ? AISLE_OK : blame(self);
 }
 
+// Is there more than APART left of the base, or a turn?
+static bool is_well_before_the_end(const aisle_verify *self) {
+    const aisle_verify_walk *walk = &self->walk;
+    const bool is_last = walk->at + 1U >= self->request.base->n; // piece of the path that is out, or it has ended
+    return walk->in_turn || (walk->left > APART && !(is_last && left_of(&walk->piece, walk->done) <= APART));
+}
+
 // The new path's waypoint self->at is reached.
 static aisle_status pass_waypoint(aisle_verify *self) {
     aisle_verify_walk *walk = &self->walk;
     const uint32_t passed = self->at + 1U;
-    const bool is_on_base = walk->at < self->request.base->n && (walk->left > APART || walk->in_turn);
-    walk->counted = is_on_base ? passed : walk->counted;
+    walk->counted = is_well_before_the_end(self) ? passed : walk->counted;
     if (passed >= (uint32_t)self->path->num_waypoints) {
         return finish(self, passed);
     }
@@ -165,7 +171,8 @@ static aisle_status move_along(aisle_verify *self) {
             return blame(self);
         }
     }
-    if (!is_slow_enough(self, 0.0) || !is_slow_enough(self, step)) {
+    if (!is_slow_enough(self,
+                        step)) { // at its beginning by the step before, at the first by v_start: speeds do not jump
         return blame(self);
     }
     walk->done += step;

@@ -295,8 +295,7 @@ typedef struct stretch {
     long double length;
 } stretch;
 
-static stretch stretch_at(int i) {
-    const aisle_waypoint_msg *a = &path.waypoints[i - 1], *b = &path.waypoints[i];
+static stretch stretch_between(const aisle_waypoint_msg *a, const aisle_waypoint_msg *b) {
     const long double pi = acosl(-1.0L), k = (long double)b->curvature;
     stretch s = {.x = (long double)a->x, .y = (long double)a->y, .theta = (long double)a->theta};
     s.turn = remainderl((long double)b->theta - (long double)a->theta, 2.0L * pi);
@@ -316,6 +315,10 @@ static stretch stretch_at(int i) {
     s.sweep = side * 2.0L * asinl(fminl(1.0L, 0.5L * chord / radius));
     s.length = radius * fabsl(s.sweep);
     return s;
+}
+
+static stretch stretch_at(int i) {
+    return stretch_between(&path.waypoints[i - 1], &path.waypoints[i]);
 }
 
 static void stretch_pose(const stretch *s, long double u, long double *pose) {
