@@ -9,11 +9,11 @@ from pathlib import Path
 
 from csource import ROOT, c_files, includes
 
-LEVEL = {"base": 0, "wire": 1, "world": 1, "algo": 2, "robot": 3, "plan": 4, "daemon": 5, "replay": 5}
+LEVEL = {"base": 0, "wire": 1, "world": 1, "algo": 2, "robot": 3, "plan": 4, "daemon": 5, "replay": 5, "sim": 5}
 CORE = 4  # levels up to here keep to CORE_SYSTEM
 PUBLIC = {"status.h": 0, "limits.h": 0, "version.h": 0, "messages.h": 1, "energy.h": 3, "planner.h": 4}
 CORE_SYSTEM = {"float.h", "inttypes.h", "limits.h", "math.h", "stdbool.h", "stddef.h", "stdint.h", "string.h"}
-SIDEWAYS = {("wire", "world"), ("daemon", "replay")}  # same level, still not seen by the first
+SIDEWAYS = {("wire", "world"), ("daemon", "replay"), ("daemon", "sim"), ("replay", "sim")}  # same level, still not seen by the first
 CCD_USER = "src/world/collide.c"
 
 

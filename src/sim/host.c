@@ -1,0 +1,83 @@
+#include "sim/host.h"
+
+#include <string.h>
+#include <time.h>
+
+#define STATUS_US 200000 // as aisled's heartbeat
+
+static void write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes, size_t size) {
+    char name[AISLE_CHANNEL_NAME_LEN];
+    aisle_channel_name(self->prefix, channel, name);
+    aisle_log_event event = {.number = self->events++,
+                             .utime = utime,
+                             .channel = name,
+                             .channel_length = strlen(name),
+                             .bytes = bytes,
+                             .size = size};
+    if (self->log != NULL && !aisle_log_write(self->log, &event)) {
+        self->failed = true;
+    }
+}
+
+static void on_output(void *ctx, const aisle_replay_output *output) {
+    aisle_sim_host *self = ctx;
+    write_log(self, output->utime, output->channel, output->bytes, output->size);
+    self->heard(self->ctx, output->channel, output->utime, output->bytes, output->size);
+}
+
+aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_settings *settings, FILE *log,
+                                       aisle_sim_heard heard, void *ctx, char *message) {
+    memset(self, 0, sizeof *self);
+    self->prefix = settings->prefix;
+    self->log = log;
+    self->heard = heard;
+    self->ctx = ctx;
+    aisle_status status = aisle_engine_start(&self->engine, settings, 1, 0, message);
+    if (status == AISLE_OK) {
+        aisle_replay_init(&self->replay, self->engine.planner, on_output, self);
+    }
+    return status;
+}
+
+static int64_t clock_us(void) {
+    struct timespec t = {0, 0};
+    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
+}
+
+static void tell_status(aisle_sim_host *self, int64_t utime) {
+    aisle_status_msg status;
+    uint8_t bytes[512];
+    size_t size = 0;
+    aisle_planner_status(self->engine.planner, utime, &status);
+    status.seq = ++self->status_seq;
+    if (aisle_msg_encode(AISLE_MSG_STATUS, &status, bytes, sizeof bytes, &size) == AISLE_OK) {
+        write_log(self, utime, AISLE_CHANNEL_STATUS, bytes, size);
+        self->heard(self->ctx, AISLE_CHANNEL_STATUS, utime, bytes, size);
+    }
+}
+
+void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime) {
+    if (aisle_planner_next_deadline(self->engine.planner) <= utime) {
+        int64_t start = clock_us();
+        aisle_replay_advance(&self->replay, utime);
+        aisle_histogram_add(&self->work, clock_us() - start);
+    }
+    if (utime >= self->next_status_us) {
+        tell_status(self, utime);
+        self->next_status_us = utime + STATUS_US;
+    }
+}
+
+void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
+                         size_t size) {
+    aisle_sim_host_advance(self, utime);
+    write_log(self, utime, channel, bytes, size);
+    int64_t start = clock_us();
+    aisle_replay_input(&self->replay, utime, channel, bytes, size);
+    aisle_histogram_add(&self->work, clock_us() - start);
+}
+
+void aisle_sim_host_stop(aisle_sim_host *self) {
+    aisle_engine_stop(&self->engine);
+}

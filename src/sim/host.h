@@ -1,0 +1,49 @@
+// host.h - who plans for the simulated vehicle: the core alone, or a daemon on a bus. Level 5.
+//
+// A host takes the simulation's messages, lets time pass and hands back what the planner sends. Both take and give the
+// very bytes of the bus and may write them all, in their order, to an LCM log.
+//
+//     core   the planner in this process on the simulation's clock, fed by the same code as aisle-replay's (replay.h):
+//            each input acts at its time, what the planner does by itself at its deadline; planning takes no time on
+//            that clock. So a log replays to the same bytes by construction, and a seed gives the same log.
+//
+// Memory: the struct. Threads: one, and liblcm's.
+#ifndef AISLE_SIM_HOST_H
+#define AISLE_SIM_HOST_H
+
+#include "daemon/engine.h"
+#include "daemon/histogram.h"
+#include "daemon/log.h"
+#include "replay/replay.h"
+
+// One message of the planner's: PATH, REPLY, STATUS. Valid during the call.
+typedef void (*aisle_sim_heard)(void *ctx, aisle_channel channel, int64_t utime, const uint8_t *bytes, size_t size);
+
+typedef struct aisle_sim_host {
+    const char *prefix; // of the channels
+    aisle_sim_heard heard;
+    void *ctx;
+    FILE *log; // NULL: none is written
+    int64_t events;
+    bool failed; // a file, the bus or memory gave out
+    // core
+    aisle_engine engine;
+    aisle_replay replay;
+    int64_t next_status_us;
+    int32_t status_seq;
+    aisle_histogram work; // us of the computer's time for each input and each deadline
+} aisle_sim_host;
+
+// The planner in this process, its output to `heard`. settings, log: as long as the host. AISLE_ERR_*: as
+// aisle_engine_start(), message likewise.
+aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_settings *settings, FILE *log,
+                                       aisle_sim_heard heard, void *ctx, char *message);
+
+// Sends one input at its time, not before the last one's.
+void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes, size_t size);
+
+// Lets time pass until utime.
+void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime);
+
+void aisle_sim_host_stop(aisle_sim_host *self);
+#endif

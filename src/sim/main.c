@@ -1,0 +1,242 @@
+// aisle-sim - drives a simulated vehicle through a hall of moving obstacles, planned for by the core in this process.
+#include "aisle/version.h"
+#include "daemon/options.h"
+#include "sim/report.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EXIT_GOOD = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
+
+static const char help[] =
+    "aisle-sim drives a simulated vehicle and says what came of it.\n"
+    "usage: aisle-sim LOG [options]\n"
+    "LOG is an LCM log with layout, vehicle, the pose to start from and the goals (aisle map, vehicle, goal --log).\n"
+    "  --movers LIST   KIND:COUNT[:V_BOUND],...; kinds: constant, jumps, agv, person, adversarial\n"
+    "  --tracks FILE   recorded ways, CSV; --place X,Y,TURN,SCALE puts their middle there (m, m, rad, 1)\n"
+    "  --seed N        of everything drawn; 1 by default\n"
+    "  --time S        ends then; by default after ten times the way without movers and a minute\n"
+    "  --room M        between vehicle and movers at first, 2 by default\n"
+    "  --sources N     1 to 4 sources share the movers, 0: none tells of them\n"
+    "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
+    "  --json FILE     the figures as JSON\n"
+    "  --truth FILE    where everything truly was, CSV\n"
+    "  --prefix NAME   of the channels; AISLE by default\n"
+    "  --config FILE   settings of aisled\n"
+    "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
+
+typedef struct arguments {
+    const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
+    bool version, help;
+} arguments;
+
+static struct {
+    arguments given;
+    aisle_settings settings;
+    aisle_sim_setup setup;
+    aisle_sim_tracks tracks;
+    aisle_sim_host host;
+    aisle_sim_episode episode;
+    aisle_log_reader log;
+    FILE *in, *out, *json;
+} tool;
+
+void aisle_assert_failed(const char *file, int line, const char *condition) {
+    (void)fprintf(stderr, "aisle-sim: %s:%d: invariant does not hold: %s\n", file, line, condition);
+    abort();
+}
+
+static int complain(int code, const char *what, const char *name) {
+    (void)fprintf(stderr, "aisle-sim: %s%s%s\n", name == NULL ? "" : name, name == NULL ? "" : ": ", what);
+    return code;
+}
+
+static bool parse(arguments *out, int argc, char **argv, char *message) {
+    const aisle_option options[] = {
+        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks}, {"--place", NULL, &out->place},
+        {"--seed", NULL, &out->seed},       {"--time", NULL, &out->time},     {"--room", NULL, &out->room},
+        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},       {"--json", NULL, &out->json},
+        {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},
+        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
+    };
+    size_t plain = 0;
+    return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
+}
+
+// ---- options
+
+static bool read_number(const char *text, double lo, double hi, double *out) {
+    char *end = NULL;
+    if (text == NULL) {
+        return true;
+    }
+    *out = strtod(text, &end);
+    return end != text && *end == '\0' && *out >= lo && *out <= hi;
+}
+
+// One KIND:COUNT[:V_BOUND] up to the comma.
+static bool read_group(const char *text, size_t length, aisle_sim_group *out) {
+    char copy[64], kind[16];
+    unsigned count = 0;
+    double v_bound = 0.0;
+    int end = 0;
+    if (length >= sizeof copy) {
+        return false;
+    }
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    bool good = (sscanf(copy, "%15[a-z]:%u%n", kind, &count, &end) == 2 && (size_t)end == length) ||
+                (sscanf(copy, "%15[a-z]:%u:%lf%n", kind, &count, &v_bound, &end) == 3 && (size_t)end == length);
+    *out = (aisle_sim_group){.kind = aisle_sim_kind_of(good ? kind : ""), .count = count, .v_bound = v_bound};
+    return good && out->kind < AISLE_SIM_TRACK && count <= AISLE_SIM_MOVERS_MAX && v_bound >= 0.0 && v_bound <= 10.0;
+}
+
+static bool read_movers(const char *text, aisle_sim_setup *setup) {
+    while (text != NULL && *text != '\0') {
+        size_t length = strcspn(text, ",");
+        if (setup->num_groups == AISLE_SIM_GROUPS_MAX ||
+            !read_group(text, length, &setup->group[setup->num_groups++])) {
+            return false;
+        }
+        text += length + (text[length] == ',' ? 1 : 0);
+    }
+    return true;
+}
+
+static int read_tracks(const arguments *given) {
+    char message[AISLE_SIM_TRACKS_MESSAGE_LEN];
+    double x, y, turn, scale;
+    int end = 0;
+    if (given->tracks == NULL) {
+        return EXIT_GOOD;
+    }
+    if (!aisle_sim_tracks_read(&tool.tracks, given->tracks, message)) {
+        return complain(EXIT_TROUBLE, message, NULL);
+    }
+    if (given->place != NULL) {
+        if (sscanf(given->place, "%lf,%lf,%lf,%lf%n", &x, &y, &turn, &scale, &end) != 4 || given->place[end] != '\0' ||
+            !(scale > 0.0 && scale <= 100.0 && fabs(turn) <= 10.0)) {
+            return complain(EXIT_USAGE, "not X,Y,TURN,SCALE", "--place");
+        }
+        aisle_sim_tracks_map(&tool.tracks, aisle_vec2_of(x, y), turn, scale);
+    }
+    tool.setup.tracks = &tool.tracks;
+    return EXIT_GOOD;
+}
+
+static int read_setup(const arguments *given) {
+    double seed = 1.0, sources = 1.0;
+    if (!read_number(given->seed, 0.0, 9007199254740992.0, &seed)) {
+        return complain(EXIT_USAGE, "not a number from 0 on", "--seed");
+    }
+    tool.setup = aisle_sim_setup_usual((uint64_t)seed);
+    if (!read_number(given->time, 0.0, 1e5, &tool.setup.time_limit) ||
+        !read_number(given->room, 0.0, 1e3, &tool.setup.room) || !read_number(given->sources, 0.0, 4.0, &sources)) {
+        return complain(EXIT_USAGE, "--time, --room or --sources is out of range; see --help", NULL);
+    }
+    tool.setup.num_sources = (int32_t)sources;
+    if (!read_movers(given->movers, &tool.setup)) {
+        return complain(EXIT_USAGE, "not KIND:COUNT[:V_BOUND],...; see --help", "--movers");
+    }
+    return read_tracks(given);
+}
+
+// ---- running
+
+static bool open_file(const char *name, const char *mode, FILE **file) {
+    *file = name == NULL ? NULL : fopen(name, mode);
+    return name == NULL || *file != NULL || complain(EXIT_TROUBLE, strerror(errno), name) == EXIT_GOOD;
+}
+
+static bool close_file(FILE *file) {
+    bool bad = file != NULL && ferror(file) != 0;
+    return file == NULL || (fclose(file) == 0 && !bad);
+}
+
+// Feeds the set-up of the log.
+static bool prepare(void) {
+    aisle_log_event event;
+    while (aisle_log_next(&tool.log, &event)) {
+        aisle_channel channel = aisle_channel_find(tool.settings.prefix, event.channel, event.channel_length);
+        if ((int)channel < AISLE_CHANNEL_INPUTS &&
+            !aisle_sim_episode_prepare(&tool.episode, channel, event.bytes, event.size)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int run(void) {
+    char message[AISLE_SETTINGS_MESSAGE_LEN];
+    aisle_status status =
+        aisle_sim_host_start_core(&tool.host, &tool.settings, tool.out, aisle_sim_episode_hear, &tool.episode, message);
+    if (status != AISLE_OK) {
+        return complain(status == AISLE_ERR_ARG ? EXIT_USAGE : EXIT_TROUBLE, message, NULL);
+    }
+    aisle_sim_episode_start(&tool.episode, &tool.setup, &tool.host);
+    if (!prepare()) {
+        return complain(EXIT_TROUBLE, "a message of the set-up cannot be used", tool.given.log);
+    }
+    if (!aisle_sim_episode_run(&tool.episode, message)) {
+        return complain(EXIT_TROUBLE, message, tool.given.log);
+    }
+    aisle_sim_report_text(&tool.episode, stdout);
+    if (tool.json != NULL) {
+        aisle_sim_report_json(&tool.episode, tool.json);
+    }
+    const aisle_sim_judge *judge = &tool.episode.judge;
+    return tool.episode.arrived && judge->collisions + judge->static_collisions == 0 ? EXIT_GOOD : EXIT_TROUBLE;
+}
+
+static int run_files(void) {
+    const arguments *given = &tool.given;
+    if (!open_file(given->log, "rb", &tool.in) || !open_file(given->out, "wb", &tool.out) ||
+        !open_file(given->json, "w", &tool.json) || !open_file(given->truth, "w", &tool.setup.truth)) {
+        return EXIT_TROUBLE;
+    }
+    if (!aisle_log_open(&tool.log, tool.in)) {
+        return complain(EXIT_TROUBLE, "not a file that can be read twice", given->log);
+    }
+    int code = run();
+    aisle_sim_episode_end(&tool.episode);
+    aisle_sim_host_stop(&tool.host);
+    aisle_sim_tracks_free(&tool.tracks);
+    (void)close_file(tool.in);
+    if (!close_file(tool.out) || !close_file(tool.json) || !close_file(tool.setup.truth)) {
+        code = complain(EXIT_TROUBLE, "the disk gave out", NULL);
+    }
+    return code;
+}
+
+static int start(void) {
+    char message[AISLE_SETTINGS_MESSAGE_LEN];
+    const arguments *given = &tool.given;
+    aisle_settings_defaults(&tool.settings);
+    if (given->config != NULL && aisle_settings_read(&tool.settings, given->config, message) != AISLE_OK) {
+        (void)fprintf(stderr, "%s\n", message);
+        return EXIT_USAGE;
+    }
+    if (given->prefix != NULL &&
+        aisle_settings_set(&tool.settings, "bus", "prefix", given->prefix, message) != AISLE_OK) {
+        return complain(EXIT_USAGE, message, NULL);
+    }
+    int code = read_setup(given);
+    return code == EXIT_GOOD ? run_files() : code;
+}
+
+int main(int argc, char **argv) {
+    char message[AISLE_OPTIONS_MESSAGE_LEN];
+    if (!parse(&tool.given, argc, argv, message)) {
+        return complain(EXIT_USAGE, message, NULL);
+    }
+    if (tool.given.help || tool.given.version) {
+        (void)printf("%s", tool.given.help ? help : "aisle-sim " AISLE_VERSION "\n");
+        return EXIT_GOOD;
+    }
+    if (tool.given.log == NULL) {
+        return complain(EXIT_USAGE, "a log is missing; see --help", NULL);
+    }
+    return start();
+}

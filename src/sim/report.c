@@ -1,0 +1,120 @@
+#include "sim/report.h"
+
+#include "replay/report.h"
+
+#include <inttypes.h>
+
+static double ms(const aisle_histogram *h, double share) {
+    return (double)aisle_histogram_percentile(h, share) * 1e-3;
+}
+
+static void text_of_contacts(const aisle_sim_judge *judge, FILE *out) {
+    (void)fprintf(out,
+                  "collisions while moving %" PRId64 " (with the hall %" PRId64 "), contacts at rest %" PRId64
+                  ", encounters %" PRId64 "\n",
+                  judge->collisions + judge->static_collisions, judge->static_collisions, judge->contacts_at_rest,
+                  judge->encounters);
+    for (uint32_t i = 0; i < judge->num_contacts; i++) {
+        const aisle_sim_contact *c = &judge->contact[i];
+        (void)fprintf(out, "  %8.3f s: %s %s %" PRId32 " at %.3f, %.3f, up to %.3f m/s\n", c->t,
+                      c->moving ? "collision with" : "touched at rest by", c->is_static ? "hall" : "mover", c->id,
+                      c->pose.x, c->pose.y, c->speed);
+    }
+}
+
+static void text_of_gap(const char *name, double gap, FILE *out) {
+    if (isfinite(gap)) {
+        (void)fprintf(out, ", %s %.3f m", name, gap);
+    }
+}
+
+static void text_of_paths(const aisle_sim_episode *e, FILE *out) {
+    (void)fprintf(out, "paths: revisions %" PRId64 ", renewals %" PRId64 ", unplanned stops %" PRId64 ";", e->revisions,
+                  e->renewals, e->stops);
+    for (uint32_t i = 0; i < e->num_causes; i++) {
+        const aisle_sim_cause *c = &e->cause[i];
+        (void)fprintf(out, " %s%s%s %" PRId64, aisle_report_path_status(c->status), c->cause == 0 ? "" : "/",
+                      c->cause == 0 ? "" : aisle_cause_name(c->cause), c->paths);
+    }
+    (void)fputc('\n', out);
+}
+
+void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
+    const aisle_sim_judge *judge = &e->judge;
+    (void)fprintf(out, "seed %" PRIu64 ": %s, %d of %d goals, %.2f s", e->setup.seed,
+                  e->arrived ? "arrived"
+                             : (judge->arrival >= 0.0 ? "there, but the planner does not say so" : "not arrived"),
+                  judge->num_visited, judge->goals.num_goals,
+                  judge->arrival >= 0.0 ? judge->arrival : aisle_sim_episode_seconds(e));
+    if (e->optimum > 0.0 && judge->arrival >= 0.0) {
+        (void)fprintf(out, ", %.3f of the %.2f s without movers", (judge->arrival - e->goals_at) / e->optimum,
+                      e->optimum);
+    }
+    (void)fprintf(out, "\nway %.2f m, in motion %.2f s", judge->way, judge->moving_time);
+    text_of_gap("least gap to movers", judge->separation, out);
+    text_of_gap("in motion", judge->separation_moving, out);
+    text_of_gap("to the hall", judge->static_gap, out);
+    (void)fputc('\n', out);
+    text_of_contacts(judge, out);
+    text_of_paths(e, out);
+    (void)fprintf(out, "work of each input and deadline, ms: p50 %.3f, p99 %.3f, max %.3f\n", ms(&e->host->work, 0.5),
+                  ms(&e->host->work, 0.99), (double)e->host->work.max_us * 1e-3);
+}
+
+static void json_number(const char *name, double value, FILE *out) {
+    if (value >= 0.0 && isfinite(value)) {
+        (void)fprintf(out, ", \"%s\": %.6g", name, value);
+    } else {
+        (void)fprintf(out, ", \"%s\": null", name);
+    }
+}
+
+static void json_of_contacts(const aisle_sim_judge *judge, FILE *out) {
+    (void)fprintf(out, ",\n  \"contacts\": [");
+    for (uint32_t i = 0; i < judge->num_contacts; i++) {
+        const aisle_sim_contact *c = &judge->contact[i];
+        (void)fprintf(out,
+                      "%s\n    {\"t\": %.3f, \"id\": %" PRId32
+                      ", \"hall\": %s, \"moving\": %s, \"speed\": %.4f, \"x\": "
+                      "%.4f, \"y\": %.4f, \"theta\": %.4f}",
+                      i == 0 ? "" : ",", c->t, c->id, c->is_static ? "true" : "false", c->moving ? "true" : "false",
+                      c->speed, c->pose.x, c->pose.y, c->pose.theta);
+    }
+    (void)fprintf(out, "]");
+}
+
+static void json_of_causes(const aisle_sim_episode *e, FILE *out) {
+    (void)fprintf(out, ",\n  \"paths\": [");
+    for (uint32_t i = 0; i < e->num_causes; i++) {
+        const aisle_sim_cause *c = &e->cause[i];
+        (void)fprintf(out, "%s{\"status\": \"%s\", \"cause\": \"%s\", \"count\": %" PRId64 "}", i == 0 ? "" : ", ",
+                      aisle_report_path_status(c->status), c->cause == 0 ? "" : aisle_cause_name(c->cause), c->paths);
+    }
+    (void)fprintf(out, "]");
+}
+
+void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
+    const aisle_sim_judge *judge = &e->judge;
+    (void)fprintf(out, "{\"seed\": %" PRIu64 ", \"arrived\": %s, \"goals\": %d, \"visited\": %d", e->setup.seed,
+                  e->arrived ? "true" : "false", judge->goals.num_goals, judge->num_visited);
+    json_number("arrival", judge->arrival, out);
+    json_number("time", judge->arrival >= 0.0 ? judge->arrival - e->goals_at : -1.0, out);
+    json_number("optimum", e->optimum > 0.0 ? e->optimum : -1.0, out);
+    json_number("seconds", aisle_sim_episode_seconds(e), out);
+    json_number("way", judge->way, out);
+    json_number("moving_time", judge->moving_time, out);
+    (void)fprintf(out, ",\n  \"collisions\": %" PRId64 ", \"hall_collisions\": %" PRId64, judge->collisions,
+                  judge->static_collisions);
+    (void)fprintf(out, ", \"contacts_at_rest\": %" PRId64 ", \"encounters\": %" PRId64, judge->contacts_at_rest,
+                  judge->encounters);
+    json_number("separation", judge->separation, out);
+    json_number("separation_moving", judge->separation_moving, out);
+    json_number("hall_gap", judge->static_gap, out);
+    (void)fprintf(out, ",\n  \"revisions\": %" PRId64 ", \"renewals\": %" PRId64 ", \"stops\": %" PRId64, e->revisions,
+                  e->renewals, e->stops);
+    json_of_causes(e, out);
+    json_of_contacts(judge, out);
+    (void)fprintf(out, ",\n  \"work_ms\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}}\n",
+                  ms(&e->host->work, 0.5), ms(&e->host->work, 0.99), (double)e->host->work.max_us * 1e-3,
+                  e->host->work.count);
+}
