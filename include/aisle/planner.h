@@ -24,10 +24,18 @@
 // obstacle is planned again when that is over, every list for a new layout or vehicle, each from the newest pose; the path
 // that was out is withdrawn before (MAP_MISMATCH, CONFLICT with the vehicle's revision), unless it is the same vehicle by
 // all but its revision: then the path goes on under that one. What
-// names a list stays known when it is reached or cancelled: sent again it is a duplicate and moves nobody.
-// A list in any order is ordered when it is planned; from then on its goals count as reached in that order, by their
-// ids. What is reached stays reached; the others are ordered anew whenever the list is planned again, and only then. A
-// list whose goals share an id, or of an ordering there is not, is refused whole and the mission goes on.
+// names a list stays known when it is finished or cancelled: sent again it is a duplicate and moves nobody.
+// Goals (plan/mission.h has all the rules): one counts as reached when the vehicle has rested within its tolerances for its
+// dwell, by the poses' own time, as the goal being driven to (status_msg.goal_id). What is reached stays reached, through
+// other layouts and vehicles, and in a higher revision of the same list for every goal that is in it unchanged: so a list
+// may be extended or changed under way, and only what is new or changed is driven to. Another list id begins anew.
+// A list in any order is ordered when it is planned; from then on its goals count as reached in that order, by their ids.
+// What is left is ordered anew for another layout or vehicle (the path's GOAL waypoints and status_msg.goal_id tell the new
+// order), and behind the goal being driven to when the list is changed or a goal skipped; else the order stays. A list
+// whose goals share an id, or of an ordering there is not, is refused whole and the mission goes on.
+// A goal that cannot be reached is named (path_msg, status NONE) and the list waits for another layout, vehicle or revision.
+// It is skipped only when told to: by CANCEL with its id as arg, or, if it is proved to be out of reach, by
+// aisle_config.skip_unreachable: after it was named the others are planned. If none can be reached none is skipped.
 // Memory of answers: what a query was answered is remembered by what it asked (start, goals, options, vehicle, layout; no
 // ids or times of messages), and a query or goal list that asks the same gets it, path_msg.cached set, after a proof on
 // the layout in force. A changed layout keeps what it does not touch (plan/cache.h says by what rule, and what that
@@ -63,6 +71,8 @@ typedef struct aisle_config {
     int32_t work_units;        // budget of a request that names none; 0 = AISLE_WORK_UNITS_DEFAULT
     aisle_vehicle_msg vehicle; // the vehicle until a message brings one; used if has_vehicle
     bool has_vehicle;
+    bool skip_unreachable; // goals of a list that are proved to be out of reach (NO_PATH, TOO_NARROW, GOAL_OCCUPIED,
+                           // GOAL_OUTSIDE), if others are not
     bool
         forgetful; // remember no answers: every request is planned anew (for benches; the memory is there all the same)
 } aisle_config;
@@ -167,7 +177,8 @@ int64_t aisle_planner_next_deadline(const aisle_planner *self);
 
 // The heartbeat as it stands at now_us; seq is the caller's to set. cause: why the state is what it is (BLOCKED,
 // WAITING),
-// else that of the last refused input, until one of its kind is taken. O(waypoints).
+// else that of the last refused input, until one of its kind is taken. goal_list_id and goal_list_revision: of the newest
+// list, also when it is finished (goal_id 0, IDLE); 0 if it was cancelled. O(waypoints).
 void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status);
 
 // [AISLE_COUNTER_COUNT]; valid as long as the planner.

@@ -26,6 +26,7 @@ aisle_status aisle_engine_start(aisle_engine *self, const aisle_settings *settin
                            .work_units = settings->work_units,
                            .vehicle = settings->vehicle,
                            .has_vehicle = true,
+                           .skip_unreachable = settings->skip_unreachable,
                            .forgetful = !settings->remember};
     self->planner_bytes = aisle_planner_memsize(&config.limits);
     self->extra_bytes = extra;

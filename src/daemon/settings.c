@@ -38,6 +38,7 @@ static const key keys[] = {
     {"planner", "work_units", AT(work_units), 1000, 2000000000, "", KIND_WHOLE, true},
     {"planner", "work_units_per_slice", AT(work_units_per_slice), 0, 1000000, " (0 = chosen)", KIND_WHOLE, false},
     {"planner", "remember", AT(remember), 0, 0, "", KIND_BOOL, false},
+    {"planner", "skip_unreachable", AT(skip_unreachable), 0, 0, "", KIND_BOOL, false},
     LIMIT(cells, 4096, AISLE_LIMITS_CELLS_MAX),
     LIMIT(polygons, 1, 4096),
     LIMIT(vertices, 3, 65536),

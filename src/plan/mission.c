@@ -1,5 +1,6 @@
 #include "plan/mission.h"
 
+#include "base/angle.h"
 #include "base/check.h"
 #include "base/crc32.h"
 #include "wire/codec.h"
@@ -7,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#define TOLERANCE_XY 0.05 // m, where a goal names none
-#define RESTING 0.01      // m/s, rad/s: slower is at rest
+#define TOLERANCE 0.05 // m and rad, where a goal names none
+#define RESTING 0.01   // m/s and rad/s: slower is at rest
 
 // ---- lists
 
@@ -65,31 +66,165 @@ aisle_status aisle_mission_judge(const aisle_mission *self, const aisle_goal_lis
                                            : refuse(why, AISLE_STATUS_CONFLICT, list->goal_list_revision);
 }
 
-void aisle_mission_cancel(aisle_mission *self) {
+// ---- what is left
+
+static void break_rest(aisle_mission *self) {
+    self->is_resting = false;
+}
+
+// The goals left in the order they came, and none of them is sent for.
+static void line_up(aisle_mission *self) {
+    self->left = 0;
+    for (uint32_t i = 0; i < self->count; i++) {
+        if (self->fate[i] == AISLE_GOAL_LEFT) {
+            self->order[self->left++] = (uint8_t)i;
+        }
+    }
+    self->kept = self->sent = 0;
+    break_rest(self);
+}
+
+static uint32_t least(uint32_t a, uint32_t b) {
+    return a < b ? a : b;
+}
+
+// Takes the goal at this place of `order` out of it.
+static void take_out(aisle_mission *self, uint32_t at, aisle_goal_fate fate) {
+    AISLE_ASSERT(at < self->left);
+    self->fate[self->order[at]] = (uint8_t)fate;
+    memmove(self->order + at, self->order + at + 1U, self->left - at - 1U);
+    self->left--;
+    self->kept -= at < self->kept ? 1U : 0U;
+    if (fate == AISLE_GOAL_REACHED) {
+        self->sent--;
+    } else {
+        self->sent = least(self->sent, at);
+    }
+    if (at == 0U) { // another one is driven to
+        break_rest(self);
+    }
+}
+
+// Position in `order` of the first goal with this id; `left` if there is none.
+static uint32_t find_left(const aisle_mission *self, int32_t id) {
+    uint32_t at = 0;
+    while (at < self->left && self->list[self->order[at]].id != id) {
+        at++;
+    }
+    return at;
+}
+
+static void end(aisle_mission *self) {
     self->wanted = false;
-    self->has_path = false;
     self->replan = false;
 }
 
-static void begin(aisle_mission *self, const aisle_goal_list_msg *list) {
+void aisle_mission_cancel(aisle_mission *self) {
+    end(self);
+    self->cancelled = true;
+    self->count = self->left = self->done_count = self->kept = self->sent = 0;
+    break_rest(self);
+    self->serial++;
+}
+
+// ---- a list
+
+static bool same_real(double a, double b) {
+    return a <= b && a >= b;
+}
+
+static bool same_goal(const aisle_goal_msg *a, const aisle_goal_msg *b) {
+    return a->id == b->id && same_real(a->x, b->x) && same_real(a->y, b->y) && same_real(a->theta, b->theta) &&
+           same_real((double)a->tolerance_xy, (double)b->tolerance_xy) &&
+           same_real((double)a->tolerance_theta, (double)b->tolerance_theta) &&
+           same_real((double)a->dwell, (double)b->dwell);
+}
+
+// The first goal of the list that is left and equal to this one; its count if there is none.
+static uint32_t find_equal(const aisle_goal_list_msg *list, const uint8_t *fate, const aisle_goal_msg *goal) {
+    const uint32_t count = (uint32_t)(uint16_t)list->num_goals;
+    uint32_t i = 0;
+    while (i < count && (fate[i] != AISLE_GOAL_LEFT || !same_goal(&list->goals[i], goal))) {
+        i++;
+    }
+    return i;
+}
+
+// What was reached of the list before, or skipped on command, is so in this one.
+static void keep_progress(aisle_mission *self, const aisle_goal_list_msg *list) {
+    uint8_t fate[AISLE_GOAL_LIST_MAX_GOALS] = {AISLE_GOAL_LEFT};
+    uint32_t done_count = 0;
+    for (uint32_t k = 0; k < self->done_count; k++) {
+        const uint32_t i = find_equal(list, fate, &self->list[self->done[k]]);
+        if (i < (uint32_t)(uint16_t)list->num_goals) {
+            fate[i] = AISLE_GOAL_REACHED;
+            self->done[done_count++] = (uint8_t)i; // those read yet lie behind
+        }
+    }
+    for (uint32_t k = 0; k < self->count; k++) {
+        const uint32_t i =
+            self->fate[k] == AISLE_GOAL_SKIPPED ? find_equal(list, fate, &self->list[k]) : AISLE_GOAL_LIST_MAX_GOALS;
+        if (i < (uint32_t)(uint16_t)list->num_goals) {
+            fate[i] = AISLE_GOAL_SKIPPED;
+        }
+    }
+    memcpy(self->fate, fate, sizeof fate);
+    self->done_count = done_count;
+}
+
+static void forget_progress(aisle_mission *self) {
+    memset(self->fate, AISLE_GOAL_LEFT, sizeof self->fate);
+    self->done_count = 0;
+}
+
+// The goal driven to before stays the first, if it is left and unchanged: at once in an ordered list, if it is its turn.
+static void keep_first(aisle_mission *self, const aisle_goal_msg *before, bool is_resting) {
+    uint32_t at = 0;
+    while (at < self->left && !same_goal(&self->list[self->order[at]], before)) {
+        at++;
+    }
+    if (at == self->left || (at > 0U && self->request.ordering == AISLE_GOAL_LIST_ORDERED)) {
+        return;
+    }
+    const uint8_t first = self->order[at];
+    memmove(self->order + 1, self->order, at);
+    self->order[0] = first;
+    self->kept = self->sent = 1;
+    self->is_resting = is_resting;
+}
+
+static void take_goals(aisle_mission *self, const aisle_goal_list_msg *list) {
+    const bool goes_on = self->known && !self->cancelled && self->list_id == list->goal_list_id;
+    const bool is_sent = goes_on && self->wanted && self->sent > 0U, is_resting = self->is_resting;
+    const aisle_goal_msg before = is_sent ? self->list[self->order[0]] : (aisle_goal_msg){.id = 0};
+    if (goes_on) {
+        keep_progress(self, list);
+    } else {
+        forget_progress(self);
+    }
+    memcpy(self->list, list->goals, sizeof self->list);
+    self->count = (uint32_t)(uint16_t)list->num_goals;
+    line_up(self);
+    if (is_sent) {
+        keep_first(self, &before, is_resting);
+    }
+}
+
+void aisle_mission_take(aisle_mission *self, const aisle_goal_list_msg *list) {
     self->request = (aisle_request){.goal_list_id = list->goal_list_id,
                                     .goal_list_revision = list->goal_list_revision,
                                     .map_id = list->map_id,
                                     .options = list->options,
-                                    .ordering = list->ordering,
-                                    .num_goals = list->num_goals};
-    memcpy(self->request.goals, list->goals, (size_t)list->num_goals * sizeof list->goals[0]);
-    self->wanted = true;
-    self->replan = false;
-    self->reached = 0;
-    self->cause = 0;
-}
-
-void aisle_mission_take(aisle_mission *self, const aisle_goal_list_msg *list) {
+                                    .ordering = list->ordering};
     if (list->num_goals == 0) {
         aisle_mission_cancel(self);
     } else {
-        begin(self, list);
+        take_goals(self, list);
+        self->cancelled = false;
+        self->wanted = self->left > 0U;
+        self->replan = false;
+        self->cause = 0;
+        self->serial++;
     }
     self->known = true;
     self->list_id = list->goal_list_id;
@@ -97,49 +232,198 @@ void aisle_mission_take(aisle_mission *self, const aisle_goal_list_msg *list) {
     self->digest = digest_of(list);
 }
 
-// ---- progress
+// ---- skipping
 
-// Is the path in hand the one for the goals in hand?
-static bool drives_to_its_goals(const aisle_mission *self) {
-    return self->wanted && self->has_path && self->path->goal_list_id == self->list_id &&
-           self->path->goal_list_revision == self->list_revision;
-}
-
-static bool rests_at(const aisle_pose_msg *pose, const aisle_goal_msg *goal) {
-    double away = aisle_vec2_distance(aisle_vec2_of(pose->x, pose->y), aisle_vec2_of(goal->x, goal->y));
-    double tolerance = goal->tolerance_xy > 0.0F ? (double)goal->tolerance_xy : TOLERANCE_XY;
-    bool rests = fabs((double)pose->vx) < RESTING && fabs((double)pose->omega) < RESTING;
-    return rests && away <= tolerance;
-}
-
-void aisle_mission_note_pose(aisle_mission *self, const aisle_pose_msg *pose) {
-    const uint32_t count = (uint32_t)(uint16_t)self->request.num_goals;
-    while (drives_to_its_goals(self) && rests_at(pose, &self->request.goals[self->reached])) {
-        self->reached++;
-        if (self->reached == count) {
-            self->wanted = false;
-            self->has_path = false;
+// Those set aside are left again, behind the others or, in an ordered list, in their places.
+static bool bring_back(aisle_mission *self) {
+    const uint32_t before = self->left;
+    const bool is_sent = self->sent > 0U, is_resting = self->is_resting;
+    const aisle_goal_msg first = is_sent ? self->list[self->order[0]] : (aisle_goal_msg){.id = 0};
+    for (uint32_t i = 0; i < self->count; i++) {
+        if (self->fate[i] == AISLE_GOAL_ASIDE) {
+            self->fate[i] = AISLE_GOAL_LEFT;
+            self->order[self->left++] = (uint8_t)i;
         }
+    }
+    if (self->left == before) {
+        return false;
+    }
+    self->serial++;
+    if (self->request.ordering == AISLE_GOAL_LIST_ORDERED || before == 0U) {
+        line_up(self);
+        if (is_sent) {
+            keep_first(self, &first, is_resting);
+        }
+    }
+    return true;
+}
+
+// Goals were given up, or all are reached: by another plan, if anything is left.
+static void go_on(aisle_mission *self) {
+    if (self->left > 0U || bring_back(self)) {
+        self->replan = true;
+    } else {
+        end(self);
     }
 }
 
-const aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose) {
-    aisle_request *request = &self->request;
-    uint32_t left = (uint32_t)(uint16_t)request->num_goals - self->reached;
-    memmove(request->goals, request->goals + self->reached, left * sizeof request->goals[0]);
-    request->num_goals = (int16_t)left;
-    request->start =
-        pose != NULL ? (aisle_goal_msg){.x = pose->x, .y = pose->y, .theta = pose->theta} : (aisle_goal_msg){.x = 0.0};
-    request->pose_utime = pose != NULL ? pose->utime : 0;
-    self->reached = 0;
-    return request;
+bool aisle_mission_skip(aisle_mission *self, int32_t id) {
+    const uint32_t at = find_left(self, id);
+    if (!self->wanted || at == self->left) {
+        return false;
+    }
+    take_out(self, at, AISLE_GOAL_SKIPPED);
+    self->kept = least(self->kept, at > 0U ? 1U : 0U);
+    self->serial++;
+    go_on(self);
+    return true;
 }
 
-void aisle_mission_take_order(aisle_mission *self, const aisle_request *request) {
-    AISLE_ASSERT(self->request.num_goals == request->num_goals);
-    memcpy(self->request.goals, request->goals, sizeof request->goals);
+bool aisle_mission_is_out_of_reach(int16_t cause) {
+    return cause == AISLE_STATUS_NO_PATH || cause == AISLE_STATUS_TOO_NARROW || cause == AISLE_STATUS_GOAL_OCCUPIED ||
+           cause == AISLE_STATUS_GOAL_OUTSIDE;
+}
+
+// Of the goals of a request those reached meanwhile are the first ones of an ordered list; in any order ids are unique.
+bool aisle_mission_set_aside(aisle_mission *self, const aisle_request *request, uint32_t goal) {
+    const uint32_t count = (uint32_t)(uint16_t)request->num_goals, first = count - self->left;
+    AISLE_ASSERT(!aisle_mission_is_stale(self, request) && goal < count && count >= self->left);
+    const bool is_ordered = request->ordering == AISLE_GOAL_LIST_ORDERED;
+    const uint32_t at = is_ordered && goal >= first ? goal - first
+                        : is_ordered                ? self->left
+                                                    : find_left(self, request->goals[goal].id);
+    if (at == self->left) { // it was reached after all
+        self->replan = true;
+        return true;
+    }
+    take_out(self, at, AISLE_GOAL_ASIDE);
+    self->serial++;
+    self->replan = self->left > 0U;
+    if (!self->replan) {
+        (void)bring_back(self);
+    }
+    return self->replan;
+}
+
+void aisle_mission_reconsider(aisle_mission *self) {
+    (void)bring_back(self);
+    self->kept = 0;
+}
+
+// ---- progress
+
+static double tolerance_of(float told) {
+    return told > 0.0F ? (double)told : TOLERANCE;
+}
+
+static bool rests_on(const aisle_pose_msg *pose, const aisle_goal_msg *goal) {
+    const double away = aisle_vec2_distance(aisle_vec2_of(pose->x, pose->y), aisle_vec2_of(goal->x, goal->y));
+    const double speed = aisle_vec2_length(aisle_vec2_of((double)pose->vx, (double)pose->vy));
+    const double turned = fabs(aisle_angle_difference(pose->theta, goal->theta));
+    return speed < RESTING && fabs((double)pose->omega) < RESTING && away <= tolerance_of(goal->tolerance_xy) &&
+           (aisle_goal_heading_is_free(goal) || turned <= tolerance_of(goal->tolerance_theta));
+}
+
+// s from one time to a later one, any two of them.
+static double seconds(int64_t from_us, int64_t to_us) {
+    return (double)((uint64_t)to_us - (uint64_t)from_us) * 1e-6;
+}
+
+static void reach(aisle_mission *self) {
+    self->done[self->done_count++] = self->order[0];
+    take_out(self, 0, AISLE_GOAL_REACHED);
+    if (self->left == 0U) {
+        go_on(self);
+    }
+}
+
+uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_pose_msg *pose, double apart) {
+    uint32_t reached = 0;
+    const bool is_row = pose != NULL && self->has_pose && seconds(self->pose_us, pose->utime) <= apart;
+    self->has_pose = pose != NULL;
+    self->is_resting = self->is_resting && is_row;
+    if (pose == NULL) {
+        return 0;
+    }
+    self->pose_us = pose->utime;
+    while (self->wanted && self->sent > 0U) {
+        const aisle_goal_msg *goal = &self->list[self->order[0]];
+        if (!rests_on(pose, goal)) {
+            break_rest(self);
+            break;
+        }
+        if (!self->is_resting) {
+            self->is_resting = true;
+            self->rest_us = pose->utime;
+        }
+        if ((float)seconds(self->rest_us, pose->utime) < goal->dwell) {
+            break;
+        }
+        reach(self);
+        reached++;
+    }
+    return reached;
 }
 
 const aisle_goal_msg *aisle_mission_goal(const aisle_mission *self) {
-    return self->wanted ? &self->request.goals[self->reached] : NULL;
+    return self->wanted ? &self->list[self->order[0]] : NULL;
+}
+
+// ---- requests
+
+const aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose) {
+    aisle_request *request = &self->request;
+    AISLE_ASSERT(self->wanted && self->left > 0U);
+    for (uint32_t i = 0; i < self->left; i++) {
+        request->goals[i] = self->list[self->order[i]];
+    }
+    if (self->is_resting) {
+        const double dwell = (double)request->goals[0].dwell - seconds(self->rest_us, self->pose_us);
+        request->goals[0].dwell = dwell > 0.0 ? (float)dwell : 0.0F;
+    }
+    request->num_goals = (int16_t)self->left;
+    request->kept = (int16_t)self->kept;
+    request->serial = self->serial;
+    request->start = (aisle_goal_msg){.id = 0};
+    request->pose_utime = 0;
+    if (pose != NULL) {
+        request->start = (aisle_goal_msg){.x = pose->x, .y = pose->y, .theta = pose->theta};
+        request->pose_utime = pose->utime;
+    }
+    return request;
+}
+
+bool aisle_mission_is_stale(const aisle_mission *self, const aisle_request *request) {
+    return !self->wanted || request->serial != self->serial;
+}
+
+// Those behind the first ones, which were reached, are what is left, in the order they are in.
+bool aisle_mission_take_order(aisle_mission *self, const aisle_request *request, uint32_t *passed) {
+    const uint32_t count = (uint32_t)(uint16_t)request->num_goals, first = count - self->left;
+    uint8_t order[AISLE_GOAL_LIST_MAX_GOALS];
+    AISLE_ASSERT(!aisle_mission_is_stale(self, request) && count >= self->left);
+    for (uint32_t i = 0; i < self->left; i++) {
+        const int32_t id = request->goals[first + i].id;
+        const bool is_ordered = request->ordering == AISLE_GOAL_LIST_ORDERED;
+        const uint32_t at = is_ordered ? i : find_left(self, id); // ids may be shared in an ordered list
+        if (at == self->left) {
+            return false;
+        }
+        AISLE_ASSERT(self->list[self->order[at]].id == id);
+        order[i] = self->order[at];
+    }
+    if (order[0] != self->order[0]) {
+        break_rest(self);
+    }
+    memcpy(self->order, order, self->left);
+    memmove(self->request.goals, request->goals, sizeof request->goals); // it may be ours
+    for (uint32_t i = 0; i < self->count; i++) {
+        if (self->fate[i] == AISLE_GOAL_ASIDE) {
+            self->fate[i] = AISLE_GOAL_UNREACHABLE;
+        }
+    }
+    self->kept = self->sent = self->left;
+    self->cause = 0;
+    *passed = first;
+    return true;
 }

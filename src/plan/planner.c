@@ -123,9 +123,7 @@ size_t aisle_planner_memory(const aisle_planner *self, aisle_memory_row *rows, s
 // ---- requests in turn
 
 static bool is_stale(const aisle_planner *self, const aisle_request *request) {
-    const aisle_request *held = &self->mission.request;
-    return !request->is_query && (!self->mission.wanted || held->goal_list_id != request->goal_list_id ||
-                                  held->goal_list_revision != request->goal_list_revision);
+    return !request->is_query && aisle_mission_is_stale(&self->mission, request);
 }
 
 static void begin(aisle_planner *self, const aisle_request *request) {
@@ -190,6 +188,15 @@ static void count_route(aisle_planner *self) {
     counters[route->request.is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
 }
 
+// The mission's goal just refused is proved to be out of reach: the others are asked for, if that is wished.
+static void skip_unreachable(aisle_planner *self) {
+    const aisle_route *route = self->route;
+    if (self->config.skip_unreachable && !route->request.is_query && route->named != AISLE_ROUTE_NONE &&
+        aisle_mission_is_out_of_reach(route->cause.cause)) {
+        (void)aisle_mission_set_aside(&self->mission, &route->request, route->named);
+    }
+}
+
 static void end_route(aisle_planner *self) {
     aisle_route *route = self->route;
     self->planning = false;
@@ -197,6 +204,7 @@ static void end_route(aisle_planner *self) {
     const aisle_proof *answer = aisle_route_answer(route);
     if (answer == NULL) {
         aisle_planner_refuse(self, &route->request, &route->cause, route->told, route->told_count, route->spent);
+        skip_unreachable(self);
     } else if (route->request.is_query || !answer->told) {
         aisle_planner_publish(self, &route->request, answer);
     }
@@ -227,6 +235,7 @@ static void step_layout(aisle_planner *self, uint32_t units) {
         self->building = false;
         self->counters[AISLE_COUNTER_LAYOUTS]++;
         self->counters[AISLE_COUNTER_LAYOUT_WORK] += aisle_layout_work(self->layout);
+        aisle_mission_reconsider(&self->mission);
         aisle_planner_replan(self);
     }
 }

@@ -82,7 +82,11 @@ void aisle_planner_publish(aisle_planner *self, const aisle_request *request, co
         return;
     }
     aisle_mission *mission = &self->mission;
-    aisle_mission_take_order(mission, request);
+    uint32_t passed;
+    if (!aisle_mission_take_order(mission, request, &passed)) {
+        aisle_planner_replan(self);
+        return;
+    }
     memcpy(mission->current.bytes, proof->bytes, proof->size);
     mission->current.size = proof->size;
     mission->current.stamp = proof->stamp;

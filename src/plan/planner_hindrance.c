@@ -38,8 +38,7 @@ static bool is_malformed(const aisle_request *request, int32_t *id) {
     return aisle_mission_order_is_bad(request->ordering, request->goals, request->num_goals, id);
 }
 
-// What keeps anyone from driving by the pose at hand, its age left out.
-static aisle_refusal pose_hindrance(const aisle_planner *self) {
+aisle_refusal aisle_planner_pose_hindrance(const aisle_planner *self) {
     if (!self->has_pose) {
         return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
     }
@@ -85,7 +84,7 @@ aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_req
     if (obstacle_present(self, &id)) {
         return (aisle_refusal){AISLE_STATUS_BLOCKED_BY, id, 0.0F};
     }
-    return pose_hindrance(self);
+    return aisle_planner_pose_hindrance(self);
 }
 
 // ---- lease
@@ -99,7 +98,7 @@ int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us,
     if (!self->has_pose || (double)(now_us - self->pose_at_us) > timeout * 1e6) {
         return AISLE_STATUS_POSE_STALE;
     }
-    aisle_refusal why = pose_hindrance(self);
+    aisle_refusal why = aisle_planner_pose_hindrance(self);
     *id = why.id;
     return why.cause;
 }

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#define POSES_APART 1.0 // s, and more: it is not known what the vehicle did in between
+
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id) {
     self->counters[AISLE_COUNTER_REJECTED]++;
     self->cause = cause;
@@ -106,11 +108,19 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
         return AISLE_OK;
     }
     aisle_planner_revoke(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
+    aisle_mission_reconsider(&self->mission);
     aisle_planner_replan(self);
     return AISLE_OK;
 }
 
 // ---- pose
+
+static void note_progress(aisle_planner *self) {
+    const bool is_known = aisle_planner_pose_hindrance(self).cause == 0;
+    const double apart = aisle_max(self->vehicle.pose_timeout, POSES_APART);
+    (void)aisle_mission_note_pose(&self->mission, is_known ? &self->pose : NULL, apart);
+    self->mission.has_path = self->mission.has_path && self->mission.wanted;
+}
 
 // A mission refused for want of a pose is planned when there is one.
 static void try_refused_mission(aisle_planner *self) {
@@ -139,7 +149,7 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
     self->pose = *msg;
     self->pose_at_us = self->now_us;
     self->has_pose = true;
-    aisle_mission_note_pose(&self->mission, msg);
+    note_progress(self);
     try_refused_mission(self);
     return AISLE_OK;
 }
@@ -170,6 +180,17 @@ static void cancel_mission(aisle_planner *self) {
     aisle_mission_cancel(&self->mission);
 }
 
+// Gives up one goal; the last one ends the mission.
+static aisle_status skip_goal(aisle_planner *self, int32_t id) {
+    if (!aisle_mission_skip(&self->mission, id)) {
+        return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, id);
+    }
+    if (!self->mission.wanted) {
+        aisle_planner_revoke(self, 0, 0);
+    }
+    return AISLE_OK;
+}
+
 static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *msg) {
     aisle_mission *mission = &self->mission;
     aisle_refusal why;
@@ -180,13 +201,15 @@ static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *m
     if (st == AISLE_PARTIAL) {
         return duplicate(self);
     }
-    if (msg->num_goals == 0) {
-        aisle_planner_revoke(self, 0, 0);
-    } else if (queue_is_full(self)) {
+    if (msg->num_goals > 0 && queue_is_full(self)) {
         return AISLE_BUSY;
     }
     aisle_mission_take(mission, msg);
-    return msg->num_goals == 0 ? AISLE_OK : enqueue(self, aisle_planner_renew_request(self));
+    if (!mission->wanted) { // cancelled, or all of it was reached before
+        aisle_planner_revoke(self, 0, 0);
+        return AISLE_OK;
+    }
+    return enqueue(self, aisle_planner_renew_request(self));
 }
 
 void aisle_planner_replan(aisle_planner *self) {
@@ -219,6 +242,7 @@ static aisle_status take_obstacles(aisle_planner *self, const aisle_obstacles_ms
 }
 
 static aisle_status take_command(aisle_planner *self, const aisle_command_msg *msg) {
+    aisle_status st = AISLE_OK;
     switch (msg->command) {
     case AISLE_COMMAND_HOLD:
         self->held = true;
@@ -228,7 +252,11 @@ static aisle_status take_command(aisle_planner *self, const aisle_command_msg *m
         self->lease_due_us = self->now_us;
         break;
     case AISLE_COMMAND_CANCEL:
-        cancel_mission(self);
+        if (msg->arg != 0) {
+            st = skip_goal(self, msg->arg);
+        } else {
+            cancel_mission(self);
+        }
         break;
     case AISLE_COMMAND_RESEND:
         self->lease_due_us = self->now_us;
@@ -236,8 +264,10 @@ static aisle_status take_command(aisle_planner *self, const aisle_command_msg *m
     default:
         return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, msg->command);
     }
-    self->command_id = msg->command_id;
-    return AISLE_OK;
+    if (st == AISLE_OK) {
+        self->command_id = msg->command_id;
+    }
+    return st;
 }
 
 static aisle_status dispatch(aisle_planner *self, const aisle_input *input) {

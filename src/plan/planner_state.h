@@ -57,6 +57,8 @@ struct aisle_planner {
 bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting or under way, or a layout is being built
 // Why a request cannot even begin; cause 0: it can.
 aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request);
+// What keeps anyone from driving by the pose at hand, its age left out; cause 0: nothing.
+aisle_refusal aisle_planner_pose_hindrance(const aisle_planner *self);
 // Why the mission's path must not be driven at now_us; 0: it may. *id: what is meant.
 int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us, int32_t *id);
 

@@ -70,10 +70,10 @@ void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_statu
                                  .obstacles_age = -1.0F,
                                  .num_rejected = (int32_t)self->counters[AISLE_COUNTER_REJECTED]};
     status->state = state_of(self, now, &status->cause, &status->cause_id);
-    if (mission->wanted) {
-        status->goal_list_id = mission->request.goal_list_id;
-        status->goal_list_revision = mission->request.goal_list_revision;
-        status->goal_id = aisle_mission_goal(mission)->id;
+    if (mission->known && !mission->cancelled) {
+        status->goal_list_id = mission->list_id;
+        status->goal_list_revision = mission->list_revision;
+        status->goal_id = mission->wanted ? aisle_mission_goal(mission)->id : 0;
     }
     remaining(self, status);
 }

@@ -121,6 +121,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->is_wide = false;
     self->announced = false;
     self->told_count = 0;
+    self->named = AISLE_ROUTE_NONE;
     self->spent = 0;
     self->tangent_units = 0;
     self->proof_units = 0;

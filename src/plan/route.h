@@ -3,7 +3,7 @@
 // RECALL an answer to the same question (cache.h), give it this request's head and REPROVE it: the answer, flag `cached`
 // set. Spoiled or disproved it is forgotten and the request planned anew. Every answer to a query is remembered.
 // CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move); ORDER the goals if they may come in
-// any: by the lengths of the exact ways of the disc inside the footprint (tour.h), whatever the objective, with half of
+// any (those behind the ones kept): by the lengths of the exact ways of the disc inside the footprint (tour.h), whatever the objective, with half of
 // the budget at most; what is the best by then is flagged by cause BUDGET beside the path. A goal that no way leads to
 // comes first and is refused like that of a first leg. Then one way after the other, as route_ways.c lists them for the
 // objective; the best proved path by the objective's own measure is the answer:
@@ -56,8 +56,9 @@
 #include "plan/why.h"
 #include "wire/codec.h"
 
-#define AISLE_ROUTE_POINTS 2048U                                // of all legs' seed polylines
-#define AISLE_ROUTE_PIECES 768U                                 // waypoints of all legs' manoeuvres
+#define AISLE_ROUTE_POINTS 2048U // of all legs' seed polylines
+#define AISLE_ROUTE_PIECES 768U  // waypoints of all legs' manoeuvres
+#define AISLE_ROUTE_NONE UINT32_MAX
 #define AISLE_ROUTE_STRIDE 0.1                                  // m
 #define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
 #define AISLE_ROUTE_BYTES AISLE_CACHE_PATH_MAX                  // of an encoded path_t: 54 a waypoint and the head
@@ -71,6 +72,8 @@ typedef struct aisle_request { // a query, or a goal list with the pose it start
     int8_t ordering; // AISLE_GOAL_LIST_*
     int16_t num_goals;
     aisle_goal_msg goals[AISLE_GOAL_LIST_MAX_GOALS];
+    int16_t kept;    // of goals in any order: the first so many keep their place
+    uint32_t serial; // of the mission, which knows by it what is out of date
 } aisle_request;
 
 typedef struct aisle_proof { // an encoded path and what it is worth
@@ -185,6 +188,7 @@ typedef struct aisle_route {
     aisle_refusal cause; // with no path; while running: what will be told if the budget ends here, if not 0
     aisle_waypoint_msg told[AISLE_ROUTE_TOLD_MAX]; // a refusal's places, as path_t tells them
     uint32_t told_count;
+    uint32_t named; // a refusal's goal, by index in request.goals; AISLE_ROUTE_NONE: it names none
 } aisle_route;
 
 // `self` may be NULL, to measure only: then no pointer is kept, and no struct of this size is needed.

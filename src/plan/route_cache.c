@@ -9,7 +9,7 @@ static aisle_cache_question question_of(const aisle_route *self) {
     return (aisle_cache_question){.start = &request->start,
                                   .goals = self->asked,
                                   .num_goals = (uint32_t)request->num_goals,
-                                  .ordering = request->ordering,
+                                  .ordering = request->kept > 0 ? AISLE_GOAL_LIST_ORDERED : request->ordering,
                                   .options = &request->options,
                                   .vehicle = self->vehicle,
                                   .layout = self->layout,
@@ -31,7 +31,7 @@ static aisle_status plan(aisle_route *self) {
 aisle_status aisle_route_recall(aisle_route *self) {
     const aisle_cache_question question = question_of(self);
     aisle_proof *proof = &self->spare;
-    if (!has_memory(self)) {
+    if (!has_memory(self) || (self->request.kept > 0 && aisle_route_is_to_order(self))) { // no query asks so
         return plan(self);
     }
     self->spent += 1U;

@@ -28,13 +28,20 @@ static double stop_gap(const aisle_route *self, const aisle_goal_msg *stop, int3
     return aisle_layout_gap(self->layout, &disc, cap, id);
 }
 
+static void name_stop(aisle_route *self, const aisle_goal_msg *stop) {
+    if (stop != &self->request.start) {
+        aisle_route_name_goal(self, stop);
+    }
+}
+
 // AISLE_BUSY: free; AISLE_PARTIAL: occupied, NEAREST goes on; AISLE_OK: refused.
-static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bool is_start) {
+static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop) {
+    const bool is_start = stop == &self->request.start;
     aisle_vec2 p = aisle_route_place(stop);
     if (!in_bounds(self, p)) {
         int16_t outside = is_start ? AISLE_STATUS_POSE_OUTSIDE : AISLE_STATUS_GOAL_OUTSIDE;
         (void)aisle_route_refuse_at(self, outside, stop->id, 0.0, p);
-        aisle_route_name_goal(self, is_start ? 0 : stop->id);
+        name_stop(self, stop);
         return AISLE_OK;
     }
     int32_t id = 0;
@@ -43,7 +50,7 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop, bo
     if (gap < self->vehicle->margin + AISLE_SPACE_SLACK) {
         int16_t occupied = is_start ? AISLE_STATUS_START_OCCUPIED : AISLE_STATUS_GOAL_OCCUPIED;
         (void)aisle_route_refuse_at(self, occupied, id, 0.0, p);
-        aisle_route_name_goal(self, is_start ? 0 : stop->id);
+        name_stop(self, stop);
         aisle_nearest_start(&self->nearest, &self->space, (aisle_pose2){stop->x, stop->y, stop->theta},
                             aisle_goal_heading_is_free(stop));
         self->stage = AISLE_ROUTE_NEAREST;
@@ -59,9 +66,9 @@ aisle_status aisle_route_check(aisle_route *self) {
                                   (double)request->options.objective);
     }
     aisle_space_begin(&self->space, self->layout, self->vehicle, AISLE_SPACE_FREE_TURN);
-    aisle_status st = check_stop(self, &request->start, true);
+    aisle_status st = check_stop(self, &request->start);
     for (int16_t i = 0; i < request->num_goals && st == AISLE_BUSY; i++) {
-        st = check_stop(self, &request->goals[i], false);
+        st = check_stop(self, &request->goals[i]);
     }
     if (st == AISLE_BUSY) {
         aisle_route_begin_order(self);

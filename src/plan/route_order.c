@@ -4,22 +4,24 @@
 
 void aisle_route_begin_order(aisle_route *self) {
     const aisle_request *request = &self->request;
-    if (request->ordering != AISLE_GOAL_LIST_ANY_ORDER || request->num_goals < 2) {
+    if (!aisle_route_is_to_order(self)) {
         aisle_route_begin_ways(self);
         return;
     }
+    const uint32_t kept = (uint32_t)(uint16_t)request->kept, count = (uint32_t)(uint16_t)request->num_goals - kept;
     aisle_vec2 places[AISLE_GOAL_LIST_MAX_GOALS];
-    for (int16_t i = 0; i < request->num_goals; i++) {
-        places[i] = aisle_route_place(&request->goals[i]);
+    for (uint32_t i = 0; i < count; i++) {
+        places[i] = aisle_route_place(&request->goals[kept + i]);
     }
     aisle_tour_start(&self->tour, &self->tangent, self->layout, self->vehicle->inner_radius + self->vehicle->margin,
-                     aisle_route_place(&request->start), places, (uint32_t)request->num_goals);
+                     aisle_route_place(aisle_route_leg_start(self, kept)), places, count);
     self->stage = AISLE_ROUTE_ORDER;
 }
 
+// The order is one of those behind the goals kept.
 static void put_in_order(aisle_route *self, const uint8_t *order) {
-    for (int16_t i = 0; i < self->request.num_goals; i++) {
-        self->request.goals[i] = self->asked[order[i]];
+    for (int16_t i = self->request.kept; i < self->request.num_goals; i++) {
+        self->request.goals[i] = self->asked[self->request.kept + order[i - self->request.kept]];
     }
 }
 
@@ -27,7 +29,7 @@ static void put_in_order(aisle_route *self, const uint8_t *order) {
 static void put_first(aisle_route *self, uint32_t goal) {
     uint8_t order[AISLE_GOAL_LIST_MAX_GOALS] = {(uint8_t)goal};
     uint32_t count = 1;
-    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+    for (uint32_t i = 0; i < self->tour.count; i++) {
         if (i != goal) {
             order[count++] = (uint8_t)i;
         }

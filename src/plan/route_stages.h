@@ -26,6 +26,7 @@ static inline const aisle_goal_msg *aisle_route_leg_start(const aisle_route *sel
 static inline aisle_status aisle_route_refuse(aisle_route *self, int16_t cause, int32_t id, double value) {
     self->cause = (aisle_refusal){cause, id, (float)value};
     self->told_count = 0;
+    self->named = AISLE_ROUTE_NONE;
     self->stage = AISLE_ROUTE_END;
     return AISLE_OK;
 }
@@ -45,9 +46,16 @@ static inline aisle_status aisle_route_refuse_at(aisle_route *self, int16_t caus
     return st;
 }
 
-// The goal that is not reached; after aisle_route_refuse_at().
-static inline void aisle_route_name_goal(aisle_route *self, int32_t id) {
-    self->told[0].goal_id = id;
+// The goal that is not reached, one of the request's; after aisle_route_refuse_at().
+static inline void aisle_route_name_goal(aisle_route *self, const aisle_goal_msg *goal) {
+    self->told[0].goal_id = goal->id;
+    self->named = (uint32_t)(goal - self->request.goals);
+}
+
+// Is there an order to be found? Not if no goal, or only one, may come anywhere.
+static inline bool aisle_route_is_to_order(const aisle_route *self) {
+    const aisle_request *request = &self->request;
+    return request->ordering == AISLE_GOAL_LIST_ANY_ORDER && request->kept + 1 < request->num_goals;
 }
 
 // route_cache.c

@@ -12,14 +12,14 @@ void aisle_route_begin_why(aisle_route *self, uint32_t stride) {
 static aisle_status refuse_no_path(aisle_route *self) {
     const aisle_goal_msg *goal = &self->request.goals[self->leg];
     (void)aisle_route_refuse_at(self, AISLE_STATUS_NO_PATH, goal->id, 0.0, aisle_route_place(goal));
-    aisle_route_name_goal(self, goal->id);
+    aisle_route_name_goal(self, goal);
     return AISLE_OK;
 }
 
 static aisle_status refuse_too_narrow(aisle_route *self) {
     const aisle_why *why = &self->why;
     (void)aisle_route_refuse_at(self, AISLE_STATUS_TOO_NARROW, why->gap.id[0], why->gap.width, why->gap.place);
-    aisle_route_name_goal(self, self->request.goals[self->leg].id);
+    aisle_route_name_goal(self, &self->request.goals[self->leg]);
     for (uint32_t i = 0; i < why->gap.sides; i++) {
         aisle_route_tell(self, why->gap.side[i], why->gap.id[i], 0);
     }
@@ -108,7 +108,7 @@ static aisle_status end_why(aisle_route *self) {
     } else {
         (void)aisle_route_refuse_at(self, cause, why->gap.id[0], why->gap.width, why->gap.place);
     }
-    aisle_route_name_goal(self, goal->id);
+    aisle_route_name_goal(self, goal);
     return AISLE_OK;
 }
 

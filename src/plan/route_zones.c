@@ -44,7 +44,7 @@ static aisle_status refuse(aisle_route *self) {
     } else {
         (void)aisle_route_refuse_at(self, AISLE_STATUS_NO_PATH, self->opposed.id, 0.0, self->opposed.place);
     }
-    aisle_route_name_goal(self, goal->id);
+    aisle_route_name_goal(self, goal);
     for (uint32_t i = 0; self->opposed_zones == 1U && i < aisle_layout_zone_count(self->layout); i++) {
         const aisle_zone *zone = aisle_layout_zone(self->layout, i);
         if (zone->id == self->opposed.id) {

@@ -57,6 +57,7 @@ static void test_defaults_are_those_of_the_documents(void) {
     TEST_ASSERT_EQUAL_FLOAT(1.0F, settings.diag_hz);
     TEST_ASSERT_FALSE(settings.mlock);
     TEST_ASSERT_TRUE(settings.remember);
+    TEST_ASSERT_FALSE(settings.skip_unreachable);
     TEST_ASSERT_EQUAL_INT32(AISLE_WORK_UNITS_DEFAULT, settings.work_units);
     TEST_ASSERT_EQUAL_UINT32(0, settings.limits.cells);
     TEST_ASSERT_EQUAL_INT16(4, settings.vehicle.num_vertices);
@@ -74,6 +75,7 @@ static void test_empty_file_changes_nothing(void) {
 static void test_every_key_is_read(void) {
     const char *text = "; comment\n# comment\n[bus]\nurl = udpm://239.255.76.67:7667?ttl=1 ; across hosts\nprefix=V_7\n"
                        "queue_bytes = 300000\n[planner]\nwork_units = 5000\nwork_units_per_slice = 77\nremember = no\n"
+                       "skip_unreachable = yes\n"
                        "[limits]\ncells=10000\npolygons=10\nvertices=100\nopen_nodes=2048\nrequests=3\ncached_paths=7\n"
                        "[daemon]\nstatus_hz = 10\ndiag_hz = 0.5\nmlock = yes\n"
                        "[vehicle]\nvehicle_revision = 9\ndrive = tricycle\n";
@@ -90,6 +92,7 @@ static void test_every_key_is_read(void) {
     TEST_ASSERT_EQUAL_UINT32(3, settings.limits.requests);
     TEST_ASSERT_EQUAL_UINT32(7, settings.limits.cached_paths);
     TEST_ASSERT_FALSE(settings.remember);
+    TEST_ASSERT_TRUE(settings.skip_unreachable);
     TEST_ASSERT_EQUAL_FLOAT(10.0F, settings.status_hz);
     TEST_ASSERT_EQUAL_FLOAT(0.5F, settings.diag_hz);
     TEST_ASSERT_TRUE(settings.mlock);
