@@ -291,7 +291,8 @@ static bool add_movers(aisle_sim_episode *self, char *message) {
     for (uint32_t g = 0; g < setup->num_groups; g++) {
         for (uint32_t i = 0; i < setup->group[g].count; i++) {
             if (!aisle_sim_movers_add(&self->movers, setup->group[g].kind, setup->group[g].v_bound, &prey,
-                                      setup->room)) {
+                                      setup->room) &&
+                !setup->few_are_good) {
                 (void)snprintf(message, AISLE_SETTINGS_MESSAGE_LEN, "no place for so many movers");
                 return false;
             }

@@ -37,6 +37,7 @@ typedef struct aisle_sim_setup {
     double room;       // m between movers and vehicle at first
     aisle_sim_group group[AISLE_SIM_GROUPS_MAX];
     uint32_t num_groups;
+    bool few_are_good;              // movers that find no place are left out; else that is an error
     const aisle_sim_tracks *tracks; // may be NULL
     int32_t num_sources;            // 1..4 share the movers; 0: none tells of them
     aisle_sim_source_traits source;

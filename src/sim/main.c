@@ -1,25 +1,34 @@
 // aisle-sim - drives a simulated vehicle through a hall of moving obstacles, planned for by the core in this process.
 #include "aisle/version.h"
 #include "daemon/options.h"
+#include "sim/batch.h"
 #include "sim/report.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { EXIT_GOOD = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
 
 static const char help[] =
     "aisle-sim drives a simulated vehicle and says what came of it.\n"
     "usage: aisle-sim LOG [options]\n"
+    "       aisle-sim --drawn SEED [--kind KIND] [--count N] [options]\n"
+    "       aisle-sim --batch N [--kind KIND] [--count N] [--seed N] [--drives N] [--told] [--json FILE]\n"
     "LOG is an LCM log with layout, vehicle, the pose to start from and the goals (aisle map, vehicle, goal --log).\n"
+    "--drawn draws hall, vehicle, goals and movers from the seed, --batch runs drawn drives until N encounters are "
+    "done.\n"
+    "  --kind KIND     of the movers drawn; all kinds by default. --count N: so many of each\n"
+    "  --drives N      at most so many in a batch; --told names those that did not arrive, too\n"
+    "  --blind         nobody tells of the movers: what would happen without care\n"
     "  --movers LIST   KIND:COUNT[:V_BOUND],...; kinds: constant, jumps, agv, person, adversarial\n"
     "  --tracks FILE   recorded ways, CSV; --place X,Y,TURN,SCALE puts their middle there (m, m, rad, 1)\n"
     "  --seed N        of everything drawn; 1 by default\n"
     "  --time S        ends then; by default after ten times the way without movers and a minute\n"
     "  --room M        between vehicle and movers at first, 2 by default\n"
-    "  --sources N     1 to 4 sources share the movers, 0: none tells of them\n"
+    "  --sources N     1 to 4 sources share the movers\n"
     "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
     "  --json FILE     the figures as JSON\n"
     "  --truth FILE    where everything truly was, CSV\n"
@@ -28,6 +37,8 @@ static const char help[] =
     "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
 
 typedef struct arguments {
+    const char *drawn, *batch, *kind, *count, *drives;
+    bool told, blind;
     const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
     bool version, help;
 } arguments;
@@ -37,6 +48,8 @@ static struct {
     aisle_settings settings;
     aisle_sim_setup setup;
     aisle_sim_tracks tracks;
+    aisle_sim_drawn drawn;
+    aisle_sim_batch batch;
     aisle_sim_host host;
     aisle_sim_episode episode;
     aisle_log_reader log;
@@ -55,11 +68,13 @@ static int complain(int code, const char *what, const char *name) {
 
 static bool parse(arguments *out, int argc, char **argv, char *message) {
     const aisle_option options[] = {
-        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks}, {"--place", NULL, &out->place},
-        {"--seed", NULL, &out->seed},       {"--time", NULL, &out->time},     {"--room", NULL, &out->room},
-        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},       {"--json", NULL, &out->json},
-        {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},
-        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
+        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks},   {"--place", NULL, &out->place},
+        {"--seed", NULL, &out->seed},       {"--time", NULL, &out->time},       {"--room", NULL, &out->room},
+        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},         {"--json", NULL, &out->json},
+        {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix},   {"--config", NULL, &out->config},
+        {"--drawn", NULL, &out->drawn},     {"--batch", NULL, &out->batch},     {"--kind", NULL, &out->kind},
+        {"--count", NULL, &out->count},     {"--drives", NULL, &out->drives},   {"--told", &out->told, NULL},
+        {"--blind", &out->blind, NULL},     {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -126,17 +141,57 @@ static int read_tracks(const arguments *given) {
     return EXIT_GOOD;
 }
 
-static int read_setup(const arguments *given) {
-    double seed = 1.0, sources = 1.0;
-    if (!read_number(given->seed, 0.0, 9007199254740992.0, &seed)) {
-        return complain(EXIT_USAGE, "not a number from 0 on", "--seed");
+static bool read_whole(const char *text, uint64_t *out) {
+    double value = (double)*out;
+    bool good = read_number(text, 0.0, 9007199254740992.0, &value) && floor(value) == value;
+    *out = good ? (uint64_t)value : 0;
+    return good;
+}
+
+// What the drawn drives of one kind have in common.
+static int read_kind(const arguments *given, aisle_sim_kind *kind, uint64_t *count) {
+    *kind =
+        given->kind == NULL || strcmp(given->kind, "all") == 0 ? AISLE_SIM_KIND_COUNT : aisle_sim_kind_of(given->kind);
+    if (given->kind != NULL && strcmp(given->kind, "all") != 0 && *kind >= AISLE_SIM_TRACK) {
+        return complain(EXIT_USAGE, "no such kind; see --help", "--kind");
     }
-    tool.setup = aisle_sim_setup_usual((uint64_t)seed);
+    *count = 0;
+    if (!read_whole(given->count, count) || *count > AISLE_SIM_MOVERS_MAX / AISLE_SIM_TRACK) {
+        return complain(EXIT_USAGE, "not a number of movers; allowed: 0 to 51", "--count");
+    }
+    return EXIT_GOOD;
+}
+
+static int draw_one(const arguments *given) {
+    uint64_t seed = 0, count;
+    aisle_sim_kind kind;
+    if (!read_whole(given->drawn, &seed)) {
+        return complain(EXIT_USAGE, "not a whole number from 0 on", "--drawn");
+    }
+    int code = read_kind(given, &kind, &count);
+    if (code == EXIT_GOOD) {
+        aisle_sim_draw(&tool.drawn, seed, kind, (uint32_t)count);
+        tool.setup = tool.drawn.setup;
+        tool.setup.num_sources = given->blind ? 0 : tool.setup.num_sources;
+    }
+    return code;
+}
+
+static int read_setup(const arguments *given) {
+    double sources = 1.0;
+    uint64_t seed = 1;
+    if (given->drawn != NULL) {
+        return draw_one(given);
+    }
+    if (!read_whole(given->seed, &seed)) {
+        return complain(EXIT_USAGE, "not a whole number from 0 on", "--seed");
+    }
+    tool.setup = aisle_sim_setup_usual(seed);
     if (!read_number(given->time, 0.0, 1e5, &tool.setup.time_limit) ||
-        !read_number(given->room, 0.0, 1e3, &tool.setup.room) || !read_number(given->sources, 0.0, 4.0, &sources)) {
+        !read_number(given->room, 0.0, 1e3, &tool.setup.room) || !read_number(given->sources, 1.0, 4.0, &sources)) {
         return complain(EXIT_USAGE, "--time, --room or --sources is out of range; see --help", NULL);
     }
-    tool.setup.num_sources = (int32_t)sources;
+    tool.setup.num_sources = given->blind ? 0 : (int32_t)sources;
     if (!read_movers(given->movers, &tool.setup)) {
         return complain(EXIT_USAGE, "not KIND:COUNT[:V_BOUND],...; see --help", "--movers");
     }
@@ -155,9 +210,12 @@ static bool close_file(FILE *file) {
     return file == NULL || (fclose(file) == 0 && !bad);
 }
 
-// Feeds the set-up of the log.
+// Feeds the set-up, drawn or of the log.
 static bool prepare(void) {
     aisle_log_event event;
+    if (tool.given.drawn != NULL) {
+        return aisle_sim_drawn_prepare(&tool.drawn, &tool.episode);
+    }
     while (aisle_log_next(&tool.log, &event)) {
         aisle_channel channel = aisle_channel_find(tool.settings.prefix, event.channel, event.channel_length);
         if ((int)channel < AISLE_CHANNEL_INPUTS &&
@@ -196,18 +254,58 @@ static int run_files(void) {
         !open_file(given->json, "w", &tool.json) || !open_file(given->truth, "w", &tool.setup.truth)) {
         return EXIT_TROUBLE;
     }
-    if (!aisle_log_open(&tool.log, tool.in)) {
+    if (tool.in != NULL && !aisle_log_open(&tool.log, tool.in)) {
         return complain(EXIT_TROUBLE, "not a file that can be read twice", given->log);
     }
     int code = run();
     aisle_sim_episode_end(&tool.episode);
     aisle_sim_host_stop(&tool.host);
     aisle_sim_tracks_free(&tool.tracks);
-    (void)close_file(tool.in);
-    if (!close_file(tool.out) || !close_file(tool.json) || !close_file(tool.setup.truth)) {
+    if (!close_file(tool.in) || !close_file(tool.out) || !close_file(tool.json) || !close_file(tool.setup.truth)) {
         code = complain(EXIT_TROUBLE, "the disk gave out", NULL);
     }
     return code;
+}
+
+static double seconds_now(void) {
+    struct timespec t = {0, 0};
+    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+static int run_batch(const arguments *given) {
+    uint64_t first = 1, encounters = 0, count, drives = INT64_MAX / 2;
+    aisle_sim_kind kind;
+    if (!read_whole(given->batch, &encounters) || !read_whole(given->seed, &first)) {
+        return complain(EXIT_USAGE, "--batch and --seed are whole numbers from 0 on", NULL);
+    }
+    if (given->drives != NULL && !read_whole(given->drives, &drives)) {
+        return complain(EXIT_USAGE, "not a whole number from 0 on", "--drives");
+    }
+    int code = read_kind(given, &kind, &count);
+    if (code != EXIT_GOOD || !open_file(given->json, "w", &tool.json)) {
+        return code != EXIT_GOOD ? code : EXIT_TROUBLE;
+    }
+    aisle_sim_batch *batch = &tool.batch;
+    aisle_sim_batch_start(batch, kind, first);
+    batch->settings = tool.settings;
+    batch->num_movers = (uint32_t)count;
+    batch->encounters = (int64_t)encounters;
+    batch->episodes = (int64_t)drives;
+    batch->told = given->told;
+    batch->blind = given->blind;
+    double start = seconds_now();
+    if (!aisle_sim_batch_run(batch, stdout)) {
+        return complain(EXIT_TROUBLE, "memory gave out", NULL);
+    }
+    aisle_sim_batch_report(batch, seconds_now() - start, stdout);
+    if (tool.json != NULL) {
+        aisle_sim_batch_json(batch, seconds_now() - start, tool.json);
+    }
+    if (!close_file(tool.json)) {
+        return complain(EXIT_TROUBLE, "the disk gave out", NULL);
+    }
+    return batch->with_collision == 0 ? EXIT_GOOD : EXIT_TROUBLE;
 }
 
 static int start(void) {
@@ -222,6 +320,9 @@ static int start(void) {
         aisle_settings_set(&tool.settings, "bus", "prefix", given->prefix, message) != AISLE_OK) {
         return complain(EXIT_USAGE, message, NULL);
     }
+    if (given->batch != NULL) {
+        return run_batch(given);
+    }
     int code = read_setup(given);
     return code == EXIT_GOOD ? run_files() : code;
 }
@@ -235,8 +336,9 @@ int main(int argc, char **argv) {
         (void)printf("%s", tool.given.help ? help : "aisle-sim " AISLE_VERSION "\n");
         return EXIT_GOOD;
     }
-    if (tool.given.log == NULL) {
-        return complain(EXIT_USAGE, "a log is missing; see --help", NULL);
+    const arguments *given = &tool.given;
+    if ((given->log != NULL) + (given->drawn != NULL) + (given->batch != NULL) != 1) {
+        return complain(EXIT_USAGE, "one of LOG, --drawn and --batch; see --help", NULL);
     }
     return start();
 }
