@@ -29,7 +29,7 @@ void aisle_sim_episode_start(aisle_sim_episode *self, const aisle_sim_setup *set
     memset(self, 0, sizeof *self);
     self->setup = *setup;
     self->host = host;
-    self->now_us = AISLE_SIM_EPOCH_US;
+    self->now_us = host->epoch_us;
     self->rng = aisle_sim_stream(setup->seed, 4);
     self->last_revision = -1;
     self->last_status = -1;
@@ -88,6 +88,21 @@ bool aisle_sim_episode_prepare(aisle_sim_episode *self, aisle_channel channel, c
     return good;
 }
 
+bool aisle_sim_episode_is_held(const aisle_sim_episode *self) {
+    return self->status.map_id == self->scene.map_id && self->status.map_revision == self->scene.map_revision &&
+           self->status.vehicle_revision == self->vehicle_msg.vehicle_revision;
+}
+
+void aisle_sim_episode_wait(aisle_sim_episode *self, double seconds) {
+    self->now_us += (int64_t)(seconds * 1e6);
+    aisle_sim_host_advance(self->host, self->now_us);
+}
+
+void aisle_sim_episode_forget(aisle_sim_episode *self) {
+    aisle_sim_scene_free(&self->scene);
+    self->has_vehicle = self->has_start = self->has_goals = false;
+}
+
 // Encodes and sends at once.
 static void send_now(aisle_sim_episode *self, aisle_channel channel, const void *message) {
     static uint8_t bytes[AISLE_MSG_DATAGRAM_MAX]; // one thread
@@ -119,6 +134,20 @@ static void send_query(aisle_sim_episode *self) {
     send_now(self, AISLE_CHANNEL_QUERY, &query);
 }
 
+// At first, and once a second until the planner says that it has them.
+static void send_goals(aisle_sim_episode *self, int64_t since_us) {
+    bool held = self->status.goal_list_id == self->goals.goal_list_id &&
+                self->status.goal_list_revision == self->goals.goal_list_revision;
+    if (since_us < 0 || since_us % 1000000 != 0 || (since_us > 0 && held)) {
+        return;
+    }
+    if (since_us == 0) {
+        self->goals.utime = self->now_us;
+        self->goals_at = aisle_sim_episode_seconds(self);
+    }
+    send_now(self, AISLE_CHANNEL_GOALS, &self->goals);
+}
+
 // ---- what the planner says
 
 static void count_cause(aisle_sim_episode *self, const aisle_path_msg *path) {
@@ -145,6 +174,7 @@ static void hear_path(aisle_sim_episode *self, int64_t utime, const uint8_t *byt
     self->last_revision = path->path_revision;
     self->last_status = path->status;
     double delay = aisle_sim_uniform(&self->rng, self->setup.path_delay.least, self->setup.path_delay.most);
+    delay = self->host->lcm == NULL ? delay : 0.0; // a bus has a delay of its own
     int64_t due = utime + (int64_t)(delay * 1e6);
     self->failed = !aisle_sim_post_send(&self->to_vehicle, due, AISLE_CHANNEL_PATH, bytes, size) || self->failed;
 }
@@ -350,10 +380,8 @@ bool aisle_sim_episode_run(aisle_sim_episode *self, char *message) {
         tick(self);
         if (self->now_us - begin_us == QUERY_US) {
             send_query(self);
-        } else if (self->now_us - begin_us == GOALS_US) {
-            self->goals.utime = self->now_us;
-            self->goals_at = aisle_sim_episode_seconds(self);
-            send_now(self, AISLE_CHANNEL_GOALS, &self->goals);
+        } else {
+            send_goals(self, self->now_us - begin_us - GOALS_US);
         }
     }
     if (self->failed || self->host->failed) {

@@ -3,7 +3,7 @@
 // Ties the parts together: true world (scene, movers, chassis), what is measured of it (sensors), messages under way
 // (post), the planner (host), the vehicle's controller (driver) and the judge. Everything is drawn from one seed.
 //
-// Time runs in ticks of AISLE_SIM_TICK_US from AISLE_SIM_EPOCH_US. In each the world moves, the judge looks, sensors
+// Time runs in ticks of AISLE_SIM_TICK_US from the host's epoch. In each the world moves, the judge looks, sensors
 // measure, what has arrived is handed to the planner at its own time of arrival, paths that have arrived to the vehicle,
 // which commands its drives every other tick. Set-up messages come first, 1 ms apart, then a query for the way without
 // movers (its duration is the yardstick), then the goals when the sensors have spoken.
@@ -20,7 +20,6 @@
 #include "sim/sensors.h"
 
 #define AISLE_SIM_TICK_US 5000
-#define AISLE_SIM_EPOCH_US 1600000000000000
 #define AISLE_SIM_GROUPS_MAX 8
 #define AISLE_SIM_CAUSES_MAX 16
 #define AISLE_SIM_QUERY_ID 1
@@ -96,6 +95,13 @@ void aisle_sim_episode_hear(void *episode, aisle_channel channel, int64_t utime,
 // One message of the set-up: layouts, tiles, patches and vehicles are sent on; of a pose the place is where the drive
 // begins; goals are sent when it does; anything else is left out. False: not a message, or no memory.
 bool aisle_sim_episode_prepare(aisle_sim_episode *self, aisle_channel channel, const uint8_t *bytes, size_t size);
+
+// Does the planner say that it holds the layout and the vehicle? (Buses lose messages; send again what is not held.)
+bool aisle_sim_episode_is_held(const aisle_sim_episode *self);
+
+// Forgets the set-up, to prepare again, and lets `seconds` pass.
+void aisle_sim_episode_wait(aisle_sim_episode *self, double seconds);
+void aisle_sim_episode_forget(aisle_sim_episode *self);
 
 // Runs to the end. False: message[AISLE_SETTINGS_MESSAGE_LEN] says what the set-up lacks.
 bool aisle_sim_episode_run(aisle_sim_episode *self, char *message);

@@ -5,7 +5,8 @@
 
 #define STATUS_US 200000 // as aisled's heartbeat
 
-static void write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes, size_t size) {
+void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
+                              size_t size) {
     char name[AISLE_CHANNEL_NAME_LEN];
     aisle_channel_name(self->prefix, channel, name);
     aisle_log_event event = {.number = self->events++,
@@ -21,7 +22,7 @@ static void write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel
 
 static void on_output(void *ctx, const aisle_replay_output *output) {
     aisle_sim_host *self = ctx;
-    write_log(self, output->utime, output->channel, output->bytes, output->size);
+    aisle_sim_host_write_log(self, output->utime, output->channel, output->bytes, output->size);
     self->heard(self->ctx, output->channel, output->utime, output->bytes, output->size);
 }
 
@@ -32,6 +33,7 @@ aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_setting
     self->log = log;
     self->heard = heard;
     self->ctx = ctx;
+    self->epoch_us = AISLE_SIM_EPOCH_US;
     aisle_status status = aisle_engine_start(&self->engine, settings, 1, 0, message);
     if (status == AISLE_OK) {
         aisle_replay_init(&self->replay, self->engine.planner, on_output, self);
@@ -52,12 +54,16 @@ static void tell_status(aisle_sim_host *self, int64_t utime) {
     aisle_planner_status(self->engine.planner, utime, &status);
     status.seq = ++self->status_seq;
     if (aisle_msg_encode(AISLE_MSG_STATUS, &status, bytes, sizeof bytes, &size) == AISLE_OK) {
-        write_log(self, utime, AISLE_CHANNEL_STATUS, bytes, size);
+        aisle_sim_host_write_log(self, utime, AISLE_CHANNEL_STATUS, bytes, size);
         self->heard(self->ctx, AISLE_CHANNEL_STATUS, utime, bytes, size);
     }
 }
 
 void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime) {
+    if (self->lcm != NULL) {
+        aisle_sim_host_bus_advance(self, utime);
+        return;
+    }
     if (aisle_planner_next_deadline(self->engine.planner) <= utime) {
         int64_t start = clock_us();
         aisle_replay_advance(&self->replay, utime);
@@ -71,13 +77,18 @@ void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime) {
 
 void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                          size_t size) {
+    if (self->lcm != NULL) {
+        aisle_sim_host_bus_send(self, utime, channel, bytes, size);
+        return;
+    }
     aisle_sim_host_advance(self, utime);
-    write_log(self, utime, channel, bytes, size);
+    aisle_sim_host_write_log(self, utime, channel, bytes, size);
     int64_t start = clock_us();
     aisle_replay_input(&self->replay, utime, channel, bytes, size);
     aisle_histogram_add(&self->work, clock_us() - start);
 }
 
 void aisle_sim_host_stop(aisle_sim_host *self) {
+    aisle_sim_host_bus_stop(self);
     aisle_engine_stop(&self->engine);
 }

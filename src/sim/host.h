@@ -6,6 +6,8 @@
 //     core   the planner in this process on the simulation's clock, fed by the same code as aisle-replay's (replay.h):
 //            each input acts at its time, what the planner does by itself at its deadline; planning takes no time on
 //            that clock. So a log replays to the same bytes by construction, and a seed gives the same log.
+//     bus    aisled over LCM in real time: letting time pass waits for the computer's clock. aisled's own record
+//            (daemon/record.h) replays to the same bytes; this log holds what was on the bus.
 //
 // Memory: the struct. Threads: one, and liblcm's.
 #ifndef AISLE_SIM_HOST_H
@@ -19,19 +21,35 @@
 // One message of the planner's: PATH, REPLY, STATUS. Valid during the call.
 typedef void (*aisle_sim_heard)(void *ctx, aisle_channel channel, int64_t utime, const uint8_t *bytes, size_t size);
 
+#define AISLE_SIM_EPOCH_US 1600000000000000 // of a core host
+#define AISLE_SIM_SENT_MAX 64
+
+typedef struct aisle_sim_sent { // a pose or obstacles
+    int64_t utime, at_us;       // as it says; when it was sent
+} aisle_sim_sent;
+
 typedef struct aisle_sim_host {
     const char *prefix; // of the channels
     aisle_sim_heard heard;
     void *ctx;
     FILE *log; // NULL: none is written
     int64_t events;
-    bool failed; // a file, the bus or memory gave out
+    bool failed;      // a file, the bus or memory gave out
+    int64_t epoch_us; // when the simulation's time begins
     // core
     aisle_engine engine;
     aisle_replay replay;
     int64_t next_status_us;
     int32_t status_seq;
     aisle_histogram work; // us of the computer's time for each input and each deadline
+    // bus
+    void *lcm; // NULL: a core host
+    int fd;
+    int64_t start_us;                        // of the monotonic clock at the epoch
+    uint32_t burst;                          // messages sent without a pause
+    aisle_sim_sent sent[AISLE_SIM_SENT_MAX]; // the last inputs that paths name
+    uint32_t num_sent;
+    aisle_histogram answers; // us from an input's sending to the first path that rests on it
 } aisle_sim_host;
 
 // The planner in this process, its output to `heard`. settings, log: as long as the host. AISLE_ERR_*: as
@@ -39,11 +57,23 @@ typedef struct aisle_sim_host {
 aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_settings *settings, FILE *log,
                                        aisle_sim_heard heard, void *ctx, char *message);
 
+// A daemon on this bus ("": LCM's default). AISLE_ERR_ARG: it cannot be joined; message says so.
+aisle_status aisle_sim_host_start_bus(aisle_sim_host *self, const char *url, const char *prefix, FILE *log,
+                                      aisle_sim_heard heard, void *ctx, char *message);
+
 // Sends one input at its time, not before the last one's.
 void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes, size_t size);
 
 // Lets time pass until utime.
 void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime);
+
+// Files of this module alone.
+void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
+                              size_t size);
+void aisle_sim_host_bus_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
+                             size_t size);
+void aisle_sim_host_bus_advance(aisle_sim_host *self, int64_t utime);
+void aisle_sim_host_bus_stop(aisle_sim_host *self);
 
 void aisle_sim_host_stop(aisle_sim_host *self);
 #endif

@@ -10,6 +10,8 @@
 #include <string.h>
 #include <time.h>
 
+#define ATTEMPTS 5 // to have the set-up taken
+
 enum { EXIT_GOOD = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
 
 static const char help[] =
@@ -29,6 +31,7 @@ static const char help[] =
     "  --time S        ends then; by default after ten times the way without movers and a minute\n"
     "  --room M        between vehicle and movers at first, 2 by default\n"
     "  --sources N     1 to 4 sources share the movers\n"
+    "  --bus URL       aisled on this LCM bus plans, in real time; \"\" is LCM's default\n"
     "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
     "  --json FILE     the figures as JSON\n"
     "  --truth FILE    where everything truly was, CSV\n"
@@ -37,7 +40,7 @@ static const char help[] =
     "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
 
 typedef struct arguments {
-    const char *drawn, *batch, *kind, *count, *drives;
+    const char *bus, *drawn, *batch, *kind, *count, *drives;
     bool told, blind;
     const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
     bool version, help;
@@ -68,13 +71,14 @@ static int complain(int code, const char *what, const char *name) {
 
 static bool parse(arguments *out, int argc, char **argv, char *message) {
     const aisle_option options[] = {
-        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks},   {"--place", NULL, &out->place},
-        {"--seed", NULL, &out->seed},       {"--time", NULL, &out->time},       {"--room", NULL, &out->room},
-        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},         {"--json", NULL, &out->json},
-        {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix},   {"--config", NULL, &out->config},
-        {"--drawn", NULL, &out->drawn},     {"--batch", NULL, &out->batch},     {"--kind", NULL, &out->kind},
-        {"--count", NULL, &out->count},     {"--drives", NULL, &out->drives},   {"--told", &out->told, NULL},
-        {"--blind", &out->blind, NULL},     {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
+        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks}, {"--place", NULL, &out->place},
+        {"--seed", NULL, &out->seed},       {"--time", NULL, &out->time},     {"--room", NULL, &out->room},
+        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},       {"--json", NULL, &out->json},
+        {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},
+        {"--drawn", NULL, &out->drawn},     {"--batch", NULL, &out->batch},   {"--kind", NULL, &out->kind},
+        {"--count", NULL, &out->count},     {"--drives", NULL, &out->drives}, {"--bus", NULL, &out->bus},
+        {"--told", &out->told, NULL},       {"--blind", &out->blind, NULL},   {"--version", &out->version, NULL},
+        {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -226,16 +230,44 @@ static bool prepare(void) {
     return true;
 }
 
+// On a bus again and again until the daemon holds it.
+static bool prepare_held(void) {
+    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+        aisle_sim_episode_forget(&tool.episode);
+        if (!prepare()) {
+            return complain(EXIT_TROUBLE, "a message of the set-up cannot be used", tool.given.log) == EXIT_GOOD;
+        }
+        if (tool.host.lcm == NULL) {
+            return true;
+        }
+        for (int i = 0; i < 20 && !aisle_sim_episode_is_held(&tool.episode); i++) {
+            aisle_sim_episode_wait(&tool.episode, 0.1);
+        }
+        if (aisle_sim_episode_is_held(&tool.episode)) {
+            return true;
+        }
+    }
+    return complain(EXIT_TROUBLE, "the daemon does not take layout and vehicle", NULL) == EXIT_GOOD;
+}
+
+static aisle_status start_host(char *message) {
+    if (tool.given.bus != NULL) {
+        return aisle_sim_host_start_bus(&tool.host, tool.given.bus, tool.settings.prefix, tool.out,
+                                        aisle_sim_episode_hear, &tool.episode, message);
+    }
+    return aisle_sim_host_start_core(&tool.host, &tool.settings, tool.out, aisle_sim_episode_hear, &tool.episode,
+                                     message);
+}
+
 static int run(void) {
     char message[AISLE_SETTINGS_MESSAGE_LEN];
-    aisle_status status =
-        aisle_sim_host_start_core(&tool.host, &tool.settings, tool.out, aisle_sim_episode_hear, &tool.episode, message);
+    aisle_status status = start_host(message);
     if (status != AISLE_OK) {
         return complain(status == AISLE_ERR_ARG ? EXIT_USAGE : EXIT_TROUBLE, message, NULL);
     }
     aisle_sim_episode_start(&tool.episode, &tool.setup, &tool.host);
-    if (!prepare()) {
-        return complain(EXIT_TROUBLE, "a message of the set-up cannot be used", tool.given.log);
+    if (!prepare_held()) {
+        return EXIT_TROUBLE;
     }
     if (!aisle_sim_episode_run(&tool.episode, message)) {
         return complain(EXIT_TROUBLE, message, tool.given.log);

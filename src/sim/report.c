@@ -57,8 +57,10 @@ void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
     (void)fputc('\n', out);
     text_of_contacts(judge, out);
     text_of_paths(e, out);
-    (void)fprintf(out, "work of each input and deadline, ms: p50 %.3f, p99 %.3f, max %.3f\n", ms(&e->host->work, 0.5),
-                  ms(&e->host->work, 0.99), (double)e->host->work.max_us * 1e-3);
+    const aisle_histogram *h = e->host->lcm != NULL ? &e->host->answers : &e->host->work;
+    (void)fprintf(out, "%s, ms: p50 %.3f, p99 %.3f, max %.3f\n",
+                  e->host->lcm != NULL ? "from message to answer" : "work of each input and deadline", ms(h, 0.5),
+                  ms(h, 0.99), (double)h->max_us * 1e-3);
 }
 
 static void json_number(const char *name, double value, FILE *out) {
@@ -114,7 +116,8 @@ void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
                   e->renewals, e->stops);
     json_of_causes(e, out);
     json_of_contacts(judge, out);
-    (void)fprintf(out, ",\n  \"work_ms\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}}\n",
-                  ms(&e->host->work, 0.5), ms(&e->host->work, 0.99), (double)e->host->work.max_us * 1e-3,
-                  e->host->work.count);
+    const aisle_histogram *h = e->host->lcm != NULL ? &e->host->answers : &e->host->work;
+    (void)fprintf(out, ",\n  \"%s\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}}\n",
+                  e->host->lcm != NULL ? "answer_ms" : "work_ms", ms(h, 0.5), ms(h, 0.99), (double)h->max_us * 1e-3,
+                  h->count);
 }

@@ -18,11 +18,12 @@ COMMANDS = {
     "query": ("query", "ask for paths, one row each"),
     "goal": ("goals", "send a goal list, with a simulated pose if wished"),
     "watch": ("watch", "live view of the daemon"),
+    "sim": ("sim", "a simulated vehicle among simulated movers"),
     "plot": ("plot", "picture of the map and paths"),
     "check": ("checks", "judge recorded paths independently"),
     "paper": ("paper", "a paper's figures beside ours, with pictures"),
 }
-WITHOUT_LOG = ("watch", "plot", "check", "paper")
+WITHOUT_LOG = ("watch", "sim", "plot", "check", "paper")
 
 
 def join_negative(argv: list[str]) -> list[str]:
