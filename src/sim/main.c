@@ -109,7 +109,8 @@ static bool read_group(const char *text, size_t length, aisle_sim_group *out) {
     bool good = (sscanf(copy, "%15[a-z]:%u%n", kind, &count, &end) == 2 && (size_t)end == length) ||
                 (sscanf(copy, "%15[a-z]:%u:%lf%n", kind, &count, &v_bound, &end) == 3 && (size_t)end == length);
     *out = (aisle_sim_group){.kind = aisle_sim_kind_of(good ? kind : ""), .count = count, .v_bound = v_bound};
-    return good && out->kind < AISLE_SIM_TRACK && count <= AISLE_SIM_MOVERS_MAX && v_bound >= 0.0 && v_bound <= 10.0;
+    return good && out->kind < AISLE_SIM_TRACK && count <= AISLE_OBSTACLES_MAX_OBSTACLES && v_bound >= 0.0 &&
+           v_bound <= 10.0;
 }
 
 static bool read_movers(const char *text, aisle_sim_setup *setup) {
@@ -160,7 +161,7 @@ static int read_kind(const arguments *given, aisle_sim_kind *kind, uint64_t *cou
         return complain(EXIT_USAGE, "no such kind; see --help", "--kind");
     }
     *count = 0;
-    if (!read_whole(given->count, count) || *count > AISLE_SIM_MOVERS_MAX / AISLE_SIM_TRACK) {
+    if (!read_whole(given->count, count) || *count > 51) {
         return complain(EXIT_USAGE, "not a number of movers; allowed: 0 to 51", "--count");
     }
     return EXIT_GOOD;

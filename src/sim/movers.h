@@ -22,7 +22,7 @@
 #include "sim/scene.h"
 #include "sim/tracks.h"
 
-#define AISLE_SIM_MOVERS_MAX AISLE_OBSTACLES_MAX_OBSTACLES
+#define AISLE_SIM_MOVERS_MAX 1024 // tracks that are not there count, too; a source tells of 256 at most
 
 typedef enum aisle_sim_kind {
     AISLE_SIM_CONSTANT,

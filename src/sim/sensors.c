@@ -132,7 +132,7 @@ double aisle_sim_source_tell(aisle_sim_source *self, const aisle_sim_movers *mov
         const aisle_sim_mover *m = &movers->mover[i];
         bool seen = self->traits.range <= 0.0 ||
                     aisle_vec2_distance(aisle_vec2_of(m->pose.x, m->pose.y), vehicle) < self->traits.range;
-        if (m->is_there && seen) {
+        if (m->is_there && seen && out->num_obstacles < AISLE_OBSTACLES_MAX_OBSTACLES) {
             tell_one(self, m, &out->obstacles[out->num_obstacles++]);
         }
     }

@@ -32,6 +32,7 @@ from aisle_tools.world import World  # noqa: E402
 ROOT = Path(__file__).resolve().parent.parent.parent
 PASSED_ON = ("movers", "tracks", "place", "seed", "time", "room", "sources")  # options of aisle-sim
 MAP_ID = 1
+MARGIN = 0.1  # m
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -63,6 +64,8 @@ def add_world_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    if args.margin is None and args.vehicle is None:
+        args.margin = MARGIN  # a scenario's robot has none, and a vehicle that drives needs some
     world, scenario = read_hall(args)
     msg = vehicle.from_options(args, scenario) or vehicle_t()
     msg.vehicle_revision = msg.vehicle_revision or 1

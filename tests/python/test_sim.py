@@ -1,0 +1,119 @@
+"""aisle sim: set-up, options passed on, truth and picture; the drives themselves are tested in tests/sim."""
+
+import argparse
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from aisle import goal_list_t, layout_t, pose_t, vehicle_t
+from aisle_tools import cli, sim
+from aisle_tools.bus import read_events
+from aisle_tools.errors import UserError
+from PIL import Image
+
+SIM = Path(os.environ.get("AISLE_SIM", "nowhere/aisle-sim"))
+needs_program = pytest.mark.skipif(not SIM.is_file(), reason="AISLE_SIM names no program")
+
+
+def parse(*words):
+    parser = argparse.ArgumentParser()
+    cli.add_common(parser, "sim")
+    sim.configure(parser)
+    return parser.parse_args([str(w) for w in words])
+
+
+@pytest.fixture
+def scenario(data):
+    return data / "scenarios" / "field_12_disc.json"
+
+
+def test_setup_holds_layout_vehicle_pose_and_goals(tmp_path, scenario):
+    args = parse("--scenario", scenario, "--out", tmp_path, "--goal", "3,4,1", "--goal", "5,6", "--margin", "0.2")
+    world, found = sim.read_hall(args)
+    msg = vehicle_t()
+    sim.write_setup(args, world, found, msg, tmp_path / "setup.log")
+    kinds = {"LAYOUT": layout_t, "VEHICLE": vehicle_t, "POSE": pose_t, "GOALS": goal_list_t}
+    read = [(c.removeprefix("AISLE_"), d) for _, c, d in read_events(tmp_path / "setup.log")]
+    events = {name: kinds[name].decode(data) for name, data in read}
+    assert set(events) == set(kinds)
+    assert (events["POSE"].x, events["POSE"].y) == (found.start[0], found.start[1])
+    goals = events["GOALS"].goals
+    assert [(g.x, g.y) for g in goals] == [(3.0, 4.0), (5.0, 6.0)]
+    assert goals[0].theta == 1.0 and goals[0].tolerance_theta == 0.0 and goals[1].tolerance_theta > 3.2
+
+
+def test_setup_is_the_same_bytes_each_time(tmp_path, scenario):
+    args = parse("--scenario", scenario, "--out", tmp_path)
+    world, found = sim.read_hall(args)
+    logs = []
+    for name in ("a.log", "b.log"):
+        sim.write_setup(args, world, found, vehicle_t(), tmp_path / name)
+        logs.append([(c, d) for _, c, d in read_events(tmp_path / name) if not c.endswith("POSE")])
+    assert logs[0] == logs[1]
+
+
+@pytest.mark.parametrize("words", [[], ["--map", "hall.yaml"], ["--map", "x.json"]])
+def test_what_is_missing_is_named(tmp_path, data, words):
+    words = [str(data / "ros_maps" / "nav2_depot.yaml") if w == "hall.yaml" else w for w in words]
+    args = parse(*words, "--out", tmp_path)
+    with pytest.raises(UserError):
+        world, found = sim.read_hall(args)
+        sim.stops_of(args, found)
+
+
+def test_a_missing_program_is_an_error_of_the_user(tmp_path, scenario):
+    assert cli.main(["sim", "--scenario", str(scenario), "--out", str(tmp_path), "--programs", str(tmp_path)]) == 2
+
+
+@needs_program
+def test_a_run_leaves_log_figures_truth_and_picture(tmp_path, scenario):
+    out = tmp_path / "run"
+    words = ["sim", "--scenario", str(scenario), "--out", str(out), "--programs", str(SIM.parent), "--margin", "0.1"]
+    assert cli.main(words) == 0
+    figures = json.loads((out / "sim.json").read_text())
+    assert figures["arrived"] and figures["collisions"] == 0 and figures["visited"] == figures["goals"]
+    track = sim.read_truth(out / "truth.csv")[0].array
+    args = parse("--scenario", scenario, "--out", out)
+    _, found = sim.read_hall(args)
+    assert np.allclose(track[0, 1:3], found.start[:2], atol=0.01)
+    assert np.allclose(track[-1, 1:3], found.goals[-1][:2], atol=0.1)
+    assert len(Image.open(out / "tracks.png").convert("RGB").getcolors(1 << 24)) > 50
+    assert "seed 0: arrived" in (out / "sim.txt").read_text()
+
+
+@needs_program
+def test_the_same_seed_gives_the_same_log_another_one_another(tmp_path, scenario):
+    logs = []
+    for name, seed in (("a", 5), ("b", 5), ("c", 6)):
+        out = tmp_path / name
+        words = ["sim", "--scenario", str(scenario), "--out", str(out), "--programs", str(SIM.parent), "--seed", str(seed)]
+        cli.main([*words, "--movers", "person:4,jumps:2:0.8", "--time", "10"])
+        logs.append((out / "run.log").read_bytes())
+    assert logs[0] == logs[1] != logs[2]
+
+
+@needs_program
+def test_recorded_people_walk_where_they_are_put(tmp_path, data):
+    out = tmp_path / "run"
+    hall = str(data / "ros_maps" / "thor_hall_1.yaml")
+    words = ["sim", "--map", hall, "--start", "0,-8", "--goal", "0,8", "--out", str(out)]
+    words += ["--programs", str(SIM.parent), "--time", "20", "--tracks", str(data / "tracks" / "thor_exp1_run2.csv")]
+    assert cli.main(words) in (0, 1)
+    tracks = sim.read_truth(out / "truth.csv")
+    people = [t for ident, t in tracks.items() if ident != 0]
+    assert len(people) >= 3 and {t.kind for t in people} == {"track"}
+    first = people[0].array
+    assert np.hypot(*np.diff(first[:, 1:3], axis=0).T).max() <= 3.0 * 0.1 + 1e-6
+
+
+@needs_program
+@pytest.mark.parametrize(
+    "words",
+    [["--movers", "persons:3"], ["--movers", "person"], ["--tracks", "none.csv"], ["--sources", "9"], ["--time", "-1"]],
+)
+def test_wrong_options_end_with_2_and_one_line(tmp_path, scenario, capsys, words):
+    base = ["sim", "--scenario", str(scenario), "--out", str(tmp_path / "o"), "--programs", str(SIM.parent)]
+    assert cli.main([*base, *words]) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
