@@ -10,6 +10,7 @@
 
 #define TOLERANCE 0.05 // m and rad, where a goal names none
 #define RESTING 0.01   // m/s and rad/s: slower is at rest
+#define LEVER 0.5      // m, that a radian of heading counts
 
 // ---- lists
 
@@ -69,7 +70,7 @@ aisle_status aisle_mission_judge(const aisle_mission *self, const aisle_goal_lis
 // ---- what is left
 
 static void break_rest(aisle_mission *self) {
-    self->is_resting = false;
+    self->rest = (aisle_goal_rest){.is_on = false};
 }
 
 // The goals left in the order they came, and none of them is sent for.
@@ -178,7 +179,7 @@ static void forget_progress(aisle_mission *self) {
 }
 
 // The goal driven to before stays the first, if it is left and unchanged: at once in an ordered list, if it is its turn.
-static void keep_first(aisle_mission *self, const aisle_goal_msg *before, bool is_resting) {
+static void keep_first(aisle_mission *self, const aisle_goal_msg *before, const aisle_goal_rest *rest) {
     uint32_t at = 0;
     while (at < self->left && !same_goal(&self->list[self->order[at]], before)) {
         at++;
@@ -190,12 +191,13 @@ static void keep_first(aisle_mission *self, const aisle_goal_msg *before, bool i
     memmove(self->order + 1, self->order, at);
     self->order[0] = first;
     self->kept = self->sent = 1;
-    self->is_resting = is_resting;
+    self->rest = *rest;
 }
 
 static void take_goals(aisle_mission *self, const aisle_goal_list_msg *list) {
-    const bool goes_on = self->known && !self->cancelled && self->list_id == list->goal_list_id;
-    const bool is_sent = goes_on && self->wanted && self->sent > 0U, is_resting = self->is_resting;
+    const bool goes_on = self->list_id == list->goal_list_id; // nothing does of none, or of one that was cancelled
+    const bool is_sent = goes_on && self->wanted && self->sent > 0U;
+    const aisle_goal_rest rest = self->rest;
     const aisle_goal_msg before = is_sent ? self->list[self->order[0]] : (aisle_goal_msg){.id = 0};
     if (goes_on) {
         keep_progress(self, list);
@@ -206,7 +208,7 @@ static void take_goals(aisle_mission *self, const aisle_goal_list_msg *list) {
     self->count = (uint32_t)(uint16_t)list->num_goals;
     line_up(self);
     if (is_sent) {
-        keep_first(self, &before, is_resting);
+        keep_first(self, &before, &rest);
     }
 }
 
@@ -237,7 +239,8 @@ void aisle_mission_take(aisle_mission *self, const aisle_goal_list_msg *list) {
 // Those set aside are left again, behind the others or, in an ordered list, in their places.
 static bool bring_back(aisle_mission *self) {
     const uint32_t before = self->left;
-    const bool is_sent = self->sent > 0U, is_resting = self->is_resting;
+    const bool is_sent = self->sent > 0U;
+    const aisle_goal_rest rest = self->rest;
     const aisle_goal_msg first = is_sent ? self->list[self->order[0]] : (aisle_goal_msg){.id = 0};
     for (uint32_t i = 0; i < self->count; i++) {
         if (self->fate[i] == AISLE_GOAL_ASIDE) {
@@ -252,7 +255,7 @@ static bool bring_back(aisle_mission *self) {
     if (self->request.ordering == AISLE_GOAL_LIST_ORDERED || before == 0U) {
         line_up(self);
         if (is_sent) {
-            keep_first(self, &first, is_resting);
+            keep_first(self, &first, &rest);
         }
     }
     return true;
@@ -316,12 +319,31 @@ static double tolerance_of(float told) {
     return told > 0.0F ? (double)told : TOLERANCE;
 }
 
-static bool rests_on(const aisle_pose_msg *pose, const aisle_goal_msg *goal) {
+typedef struct arrival { // a pose by a goal
+    double off;          // from it, heading included where that matters
+    bool is_within;      // its tolerances
+    bool rests;          // on it
+    bool stops;          // over it: no faster than who brakes to rest on it may be so near
+} arrival;
+
+// Up to this speed who comes to rest within `room` by braking at `rate` may still be in motion there.
+static double braking(double rate, double room) {
+    return sqrt(2.0 * rate * room);
+}
+
+static arrival look(const aisle_vehicle *vehicle, const aisle_pose_msg *pose, const aisle_goal_msg *goal) {
     const double away = aisle_vec2_distance(aisle_vec2_of(pose->x, pose->y), aisle_vec2_of(goal->x, goal->y));
     const double speed = aisle_vec2_length(aisle_vec2_of((double)pose->vx, (double)pose->vy));
-    const double turned = fabs(aisle_angle_difference(pose->theta, goal->theta));
-    return speed < RESTING && fabs((double)pose->omega) < RESTING && away <= tolerance_of(goal->tolerance_xy) &&
-           (aisle_goal_heading_is_free(goal) || turned <= tolerance_of(goal->tolerance_theta));
+    const double rate = fabs((double)pose->omega);
+    const double xy = tolerance_of(goal->tolerance_xy), theta = tolerance_of(goal->tolerance_theta);
+    const bool is_free = aisle_goal_heading_is_free(goal);
+    const double turned = is_free ? 0.0 : fabs(aisle_angle_difference(pose->theta, goal->theta));
+    const bool is_within = away <= xy && turned <= theta;
+    return (arrival){.off = away + LEVER * turned,
+                     .is_within = is_within,
+                     .rests = is_within && speed < RESTING && rate < RESTING,
+                     .stops = is_within && speed <= braking(vehicle->d_max, xy) &&
+                              (is_free || rate <= braking(vehicle->alpha_max, theta))};
 }
 
 // s from one time to a later one, any two of them.
@@ -337,28 +359,33 @@ static void reach(aisle_mission *self) {
     }
 }
 
-uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_pose_msg *pose, double apart) {
+// Is the goal being driven to reached by this pose?
+static bool is_reached(aisle_mission *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose) {
+    const aisle_goal_msg *goal = &self->list[self->order[0]];
+    const arrival it = look(vehicle, pose, goal);
+    aisle_goal_rest *rest = &self->rest;
+    if (it.rests) {
+        rest->since_us = rest->is_on ? rest->since_us : pose->utime;
+        rest->is_on = true;
+        return (float)seconds(rest->since_us, pose->utime) >= goal->dwell;
+    }
+    const bool leaves = rest->stops && it.off > rest->off;
+    *rest = (aisle_goal_rest){.stops = it.stops, .off = it.off};
+    return leaves && goal->dwell <= 0.0F && self->left > 1U;
+}
+
+uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose) {
     uint32_t reached = 0;
-    const bool is_row = pose != NULL && self->has_pose && seconds(self->pose_us, pose->utime) <= apart;
+    const double apart = aisle_max(vehicle->pose_timeout, AISLE_MISSION_APART);
+    if (pose == NULL || !self->has_pose || seconds(self->pose_us, pose->utime) > apart) {
+        break_rest(self);
+    }
     self->has_pose = pose != NULL;
-    self->is_resting = self->is_resting && is_row;
     if (pose == NULL) {
         return 0;
     }
     self->pose_us = pose->utime;
-    while (self->wanted && self->sent > 0U) {
-        const aisle_goal_msg *goal = &self->list[self->order[0]];
-        if (!rests_on(pose, goal)) {
-            break_rest(self);
-            break;
-        }
-        if (!self->is_resting) {
-            self->is_resting = true;
-            self->rest_us = pose->utime;
-        }
-        if ((float)seconds(self->rest_us, pose->utime) < goal->dwell) {
-            break;
-        }
+    while (self->wanted && self->sent > 0U && is_reached(self, vehicle, pose)) {
         reach(self);
         reached++;
     }
@@ -377,8 +404,8 @@ const aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg
     for (uint32_t i = 0; i < self->left; i++) {
         request->goals[i] = self->list[self->order[i]];
     }
-    if (self->is_resting) {
-        const double dwell = (double)request->goals[0].dwell - seconds(self->rest_us, self->pose_us);
+    if (self->rest.is_on) {
+        const double dwell = (double)request->goals[0].dwell - seconds(self->rest.since_us, self->pose_us);
         request->goals[0].dwell = dwell > 0.0 ? (float)dwell : 0.0F;
     }
     request->num_goals = (int16_t)self->left;

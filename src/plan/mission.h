@@ -14,7 +14,11 @@
 // GOALS. A goal counts as reached when the vehicle has rested on it for its dwell. It rests on it by a pose that is within
 // tolerance_xy (0: 0.05 m) and tolerance_theta (0: 0.05 rad; pi or more: any heading) and slower than 0.01 m/s and
 // 0.01 rad/s. Time is the poses' own: dwell is over at the first pose at least `dwell` after the first one of an unbroken
-// row of resting poses; two poses too far apart in time, or one that cannot be trusted, break the row. Only the goal being
+// row of resting poses; two poses more than AISLE_MISSION_APART (or pose_timeout, if that is more) apart, or one that cannot
+// be trusted, break the row. A goal without dwell that others follow is left at once, so that perhaps no pose shows the
+// vehicle at rest, and one that lags behind its path never rests quite. It counts, too, when two poses in a row show the
+// vehicle within its tolerances no faster than one may be there that brakes to rest on it, sqrt(2 d_max tolerance_xy) (and
+// the same of its heading, if that is given), and then farther off. Only the goal being
 // driven to counts, and only once a plan has stood that drives there next. Of several goals within reach of one place each
 // has its dwell in turn. A goal that is reached stays reached, whatever becomes of path, layout or vehicle; goals passed
 // without a rest are not reached, and no plan of ours passes one without.
@@ -42,6 +46,15 @@ typedef enum aisle_goal_fate {
     AISLE_GOAL_UNREACHABLE // given up by itself
 } aisle_goal_fate;
 
+#define AISLE_MISSION_APART 1.0 // s, see above
+
+typedef struct aisle_goal_rest { // on the goal being driven to, by an unbroken row of poses
+    bool is_on;                  // the vehicle rests on it, and has
+    int64_t since_us;            // since then
+    bool stops;                  // else: it may just be about to rest, or just have rested, on it
+    double off;                  // m, how far it was from it
+} aisle_goal_rest;
+
 typedef struct aisle_mission {
     bool known;                     // a list has come
     int32_t list_id, list_revision; // of the newest
@@ -61,8 +74,7 @@ typedef struct aisle_mission {
     uint32_t done_count;
     uint32_t kept;         // of those left: so many keep their place when planned next
     uint32_t sent;         // of those left: a plan has stood that drives to the first so many, in this order
-    bool is_resting;       // on the first one, by the newest pose,
-    int64_t rest_us;       // since then
+    aisle_goal_rest rest;  // on the first one
     bool has_pose;         // the newest pose can be trusted; it is of
     int64_t pose_us;       // then
     uint32_t serial;       // changes when what is asked does, other than by reaching goals in turn
@@ -99,10 +111,9 @@ bool aisle_mission_set_aside(aisle_mission *self, const aisle_request *request, 
 // Layout or vehicle are other ones: what is left is to be ordered anew, what was set aside may be in reach.
 void aisle_mission_reconsider(aisle_mission *self);
 
-// The newest pose, not older than those before (NULL: where the vehicle is cannot be trusted). Poses more than `apart` s
-// apart do not tell that it rested in between. Returns how many goals it counts as reached; the mission ends with the
-// last one.
-uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_pose_msg *pose, double apart);
+// The newest pose, not older than those before (NULL: where the vehicle is cannot be trusted). Of the vehicle pose_timeout,
+// d_max and alpha_max are read. Returns how many goals it counts as reached; the mission ends with the last one.
+uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose);
 
 // The request as it is now: the goals left, what is left of the first one's dwell, from this pose (NULL: there is none).
 // Wants goals left. Valid until asked again.

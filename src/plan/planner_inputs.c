@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#define POSES_APART 1.0 // s, and more: it is not known what the vehicle did in between
-
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id) {
     self->counters[AISLE_COUNTER_REJECTED]++;
     self->cause = cause;
@@ -117,8 +115,7 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
 
 static void note_progress(aisle_planner *self) {
     const bool is_known = aisle_planner_pose_hindrance(self).cause == 0;
-    const double apart = aisle_max(self->vehicle.pose_timeout, POSES_APART);
-    (void)aisle_mission_note_pose(&self->mission, is_known ? &self->pose : NULL, apart);
+    (void)aisle_mission_note_pose(&self->mission, &self->vehicle, is_known ? &self->pose : NULL);
     self->mission.has_path = self->mission.has_path && self->mission.wanted;
 }
 

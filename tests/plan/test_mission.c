@@ -10,6 +10,7 @@
 #define MAX AISLE_GOAL_LIST_MAX_GOALS
 
 static aisle_mission mission;
+static aisle_vehicle vehicle;
 static aisle_goal_list_msg list;
 static aisle_pose_msg pose;
 static aisle_request asked; // a copy, as the planner holds one
@@ -95,7 +96,7 @@ static uint32_t stand(double x, double y) {
     pose.utime += 100000;
     pose.x = x;
     pose.y = y;
-    return aisle_mission_note_pose(&mission, &pose, 1.0);
+    return aisle_mission_note_pose(&mission, &vehicle, &pose);
 }
 
 static uint32_t stand_on(int32_t id) {
@@ -131,6 +132,7 @@ static void done_are(int n, const int32_t *ids) {
 
 void setUp(void) {
     memset(&mission, 0, sizeof mission);
+    vehicle = (aisle_vehicle){.d_max = 0.5, .alpha_max = 2.0, .pose_timeout = 0.2};
     pose = (aisle_pose_msg){.utime = 5000000, .localized = 1};
 }
 void tearDown(void) {}
@@ -179,6 +181,9 @@ static void test_lists_over_the_limit_or_that_cannot_be_told_apart_are_refused(v
     }
     fill(2, AISLE_GOAL_LIST_ANY_ORDER, IDS(1, 2, 3, 2));
     refused(AISLE_STATUS_MALFORMED, 2);
+    list.goals[3].id = 1;
+    refused(AISLE_STATUS_MALFORMED, 1);
+    list.goals[3].id = 2;
     list.ordering = 2;
     refused(AISLE_STATUS_MALFORMED, 0);
     list.ordering = -1;
@@ -274,7 +279,7 @@ static void test_what_names_a_list_stays_known_when_it_is_finished_or_cancelled(
 // ---- arrival
 
 static void arrives(bool yes) {
-    TEST_ASSERT_EQUAL_UINT32(yes ? 1 : 0, aisle_mission_note_pose(&mission, &pose, 1.0));
+    TEST_ASSERT_EQUAL_UINT32(yes ? 1 : 0, aisle_mission_note_pose(&mission, &vehicle, &pose));
     setUp();
     take_and_plan();
 }
@@ -359,6 +364,135 @@ static void test_goals_reached_are_kept_in_their_order_of_reaching(void) {
     left_are(IDS(2));
 }
 
+// ---- stopping over a goal on the way
+
+// Two poses on the way over goal 3, with goal 4 behind: the first one this far from 3 and this fast, the second one farther.
+static uint32_t pass(double off, float v) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    setUp();
+    list.goals[0].tolerance_theta = 4.0F;
+    take_and_plan();
+    pose.vx = v;
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.0 + off, 0.0));
+    return stand(3.0 + fabs(off) + 0.02, 0.0);
+}
+
+static void test_whoever_stopped_over_a_goal_and_goes_on_has_reached_it(void) {
+    const float v = 0.2236F; // sqrt(2 * 0.5 * 0.05)
+    TEST_ASSERT_EQUAL_UINT32(1, pass(0.0, 0.02F));
+    TEST_ASSERT_EQUAL_UINT32(1, pass(-0.049, 0.02F));
+    TEST_ASSERT_EQUAL_UINT32(0, pass(-0.051, 0.02F)); // not on it
+    TEST_ASSERT_EQUAL_UINT32(1, pass(0.0, v));
+    TEST_ASSERT_EQUAL_UINT32(1, pass(0.0, -v));
+    TEST_ASSERT_EQUAL_UINT32(0, pass(0.0, v * 1.01F)); // through, not over
+    left_are(IDS(3, 4));
+}
+
+static void test_coming_near_is_not_reaching_yet(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    take_and_plan();
+    pose.vx = 0.1F;
+    TEST_ASSERT_EQUAL_UINT32(0, stand(2.96, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(0, stand(2.98, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.01, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(1, stand(3.02, 0.0));
+}
+
+static void test_only_poses_in_a_row_show_that_it_stopped(void) {
+    for (int how = 0; how < 3; how++) {
+        fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+        setUp();
+        take_and_plan();
+        pose.vx = 0.1F;
+        TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
+        if (how == 1) {
+            pose.utime += 1000000;
+        } else if (how == 2) {
+            TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &vehicle, NULL));
+        }
+        TEST_ASSERT_EQUAL_UINT32(how == 0 ? 1 : 0, stand(3.1, 0.0));
+    }
+}
+
+static void test_the_last_goal_and_one_with_dwell_want_a_rest(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3));
+    take_and_plan();
+    pose.vx = 0.02F;
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.02, 0.0));
+    fill(2, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].dwell = 0.1F;
+    take_and_plan();
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.02, 0.0));
+}
+
+static void test_a_heading_given_is_part_of_stopping_over_a_goal(void) {
+    const float rate = 0.4472F; // sqrt(2 * 2 * 0.05)
+    for (int i = 0; i < 4; i++) {
+        fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+        list.goals[0].theta = 1.0;
+        setUp();
+        take_and_plan();
+        pose.theta = i == 1 ? 1.06 : 1.04;
+        pose.omega = i == 2 ? rate * 1.01F : rate;
+        TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
+        pose.theta = i == 3 ? 1.03 : 1.07; // turns away
+        TEST_ASSERT_EQUAL_UINT32(i == 0 ? 1 : 0, stand(3.0, 0.0));
+    }
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].tolerance_theta = 3.1415927F; // it does not matter: turning is not leaving
+    setUp();
+    take_and_plan();
+    pose.omega = 5.0F;
+    for (int i = 0; i < 8; i++) {
+        pose.theta += 0.1;
+        TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, stand(3.01, 0.0));
+}
+
+static void test_a_stop_over_a_goal_counts_though_the_list_is_extended_just_then(void) {
+    fill(1, AISLE_GOAL_LIST_ANY_ORDER, IDS(3, 4));
+    take_and_plan();
+    pose.vx = 0.02F;
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
+    fill(2, AISLE_GOAL_LIST_ANY_ORDER, IDS(4, 5, 3));
+    take();
+    TEST_ASSERT_EQUAL_UINT32(1, stand(3.01, 0.0));
+}
+
+// Along a line with a goal at every metre, braking to rest on each and leaving it at once, by a controller that lags behind.
+static void test_a_vehicle_that_follows_its_path_reaches_every_goal_whatever_its_lag_and_rate_of_poses(void) {
+    int hits = 0;
+    for (int run = 0; run < 60; run++) {
+        const double lag = 0.04 * (run % 6), period = 0.02 + 0.02 * (run / 6 % 5), phase = 0.0071 * run;
+        setUp();
+        begin_list(4, 1, AISLE_GOAL_LIST_ORDERED);
+        for (int32_t id = 1; id <= 9; id++) {
+            (void)add(id);
+        }
+        take_and_plan();
+        double x = 0.0, v = 0.0, next = phase;
+        const double half = sqrt(1.0 / 0.5); // s, from rest to the middle of a metre
+        for (double t = 0.0; t < 9.0 * 2.0 * half + 2.0; t += 0.001) {
+            const double in = fmod(t, 2.0 * half);
+            const double wanted = t >= 9.0 * 2.0 * half ? 0.0 : 0.5 * (in < half ? in : 2.0 * half - in);
+            v += lag > 0.0 ? (wanted - v) * 0.001 / lag : wanted - v;
+            x += v * 0.001;
+            if (t >= next) {
+                next += period;
+                pose.utime = 5000000 + (int64_t)(t * 1e6);
+                pose.vx = (float)v;
+                pose.x = x;
+                (void)aisle_mission_note_pose(&mission, &vehicle, &pose);
+            }
+        }
+        hits += !mission.wanted;
+    }
+    TEST_ASSERT_EQUAL_INT(60, hits);
+}
+
 // ---- dwell
 
 static void dwell_list(float dwell) {
@@ -386,7 +520,7 @@ static void test_whoever_leaves_or_moves_begins_the_dwell_again(void) {
         pose.omega = how == 1 ? 0.1F : 0.0F;
         pose.theta = how == 2 ? 0.1 : 0.0;
         if (how == 4) {
-            TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, NULL, 1.0)); // who knows where it is
+            TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &vehicle, NULL)); // who knows where it is
         } else {
             TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, how == 3 ? 0.1 : 0.0));
         }
@@ -409,6 +543,12 @@ static void test_poses_too_far_apart_do_not_tell_that_it_rested(void) {
     TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
     pose.utime += 900001;
     TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    vehicle.pose_timeout = 3.0; // where more is usual
+    pose.utime += 2900000;
+    TEST_ASSERT_EQUAL_UINT32(1, stand_on(3));
+    setUp();
+    dwell_list(1.0F);
+    TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
     pose.utime += 3600000000; // a clock that jumps
     TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
     for (int i = 0; i < 9; i++) {
@@ -419,12 +559,13 @@ static void test_poses_too_far_apart_do_not_tell_that_it_rested(void) {
 
 static void test_times_far_apart_overflow_nothing(void) {
     dwell_list(1.0F);
+    vehicle.pose_timeout = 1e9;
     pose.utime = INT64_MIN;
     pose.x = 3.0;
-    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &pose, 1e9));
+    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &vehicle, &pose));
     pose.utime = INT64_MAX;
-    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &pose, 1e9)); // no row
-    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &pose, 1e9));
+    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &vehicle, &pose)); // no row
+    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &vehicle, &pose));
 }
 
 static void test_goals_in_one_place_have_their_dwells_in_turn(void) {
@@ -463,6 +604,23 @@ static void test_a_new_plan_for_the_same_goal_does_not_begin_the_dwell_again(voi
     list.goals[0].dwell = 2.0F;
     take();
     left_are(IDS(4));
+}
+
+static void test_a_plan_that_drives_elsewhere_first_begins_a_dwell_of_its_own(void) {
+    fill(1, AISLE_GOAL_LIST_ANY_ORDER, IDS(3, 4));
+    list.goals[0].dwell = list.goals[1].dwell = 1.0F;
+    list.goals[1].x = 3.0; // in one place
+    take_and_plan();
+    for (int i = 0; i < 9; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    aisle_mission_reconsider(&mission);
+    plan_as((const int32_t[]){4, 3});
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, stand_on(3));
+    left_are(IDS(3));
 }
 
 static void test_a_dwell_that_is_over_is_asked_for_as_none(void) {
@@ -617,7 +775,7 @@ static void test_a_revision_of_which_all_is_reached_is_finished_at_once(void) {
 }
 
 static void test_a_goal_of_other_content_is_another_goal(void) {
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 7; i++) {
         setUp();
         fill(1, AISLE_GOAL_LIST_ORDERED, IDS(1, 2));
         take_and_plan();
@@ -640,12 +798,15 @@ static void test_a_goal_of_other_content_is_another_goal(void) {
         case 4:
             goal->tolerance_theta = 0.01F;
             break;
+        case 5:
+            goal->id = 8;
+            break;
         default:
             goal->dwell = 0.01F;
             break;
         }
         take();
-        left_are(IDS(1, 2));
+        left_are(2, (const int32_t[]){i == 5 ? 8 : 1, 2});
         done_are(NONE);
         TEST_ASSERT_EQUAL_UINT32(0, stand_on(1)); // and not driven to yet
     }
@@ -1280,12 +1441,20 @@ int main(void) {
     RUN_TEST(test_who_moves_in_any_way_does_not_arrive);
     RUN_TEST(test_a_goal_counts_only_when_a_plan_stood_that_drives_there);
     RUN_TEST(test_goals_reached_are_kept_in_their_order_of_reaching);
+    RUN_TEST(test_whoever_stopped_over_a_goal_and_goes_on_has_reached_it);
+    RUN_TEST(test_coming_near_is_not_reaching_yet);
+    RUN_TEST(test_only_poses_in_a_row_show_that_it_stopped);
+    RUN_TEST(test_the_last_goal_and_one_with_dwell_want_a_rest);
+    RUN_TEST(test_a_heading_given_is_part_of_stopping_over_a_goal);
+    RUN_TEST(test_a_stop_over_a_goal_counts_though_the_list_is_extended_just_then);
+    RUN_TEST(test_a_vehicle_that_follows_its_path_reaches_every_goal_whatever_its_lag_and_rate_of_poses);
     RUN_TEST(test_a_goal_is_reached_after_its_dwell_by_the_poses_time);
     RUN_TEST(test_whoever_leaves_or_moves_begins_the_dwell_again);
     RUN_TEST(test_poses_too_far_apart_do_not_tell_that_it_rested);
     RUN_TEST(test_times_far_apart_overflow_nothing);
     RUN_TEST(test_goals_in_one_place_have_their_dwells_in_turn);
     RUN_TEST(test_a_new_plan_for_the_same_goal_does_not_begin_the_dwell_again);
+    RUN_TEST(test_a_plan_that_drives_elsewhere_first_begins_a_dwell_of_its_own);
     RUN_TEST(test_a_dwell_that_is_over_is_asked_for_as_none);
     RUN_TEST(test_goals_reached_while_planning_are_passed_by_the_plan);
     RUN_TEST(test_a_plan_whose_order_has_a_reached_goal_in_the_middle_is_not_taken);
