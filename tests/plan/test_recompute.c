@@ -6,9 +6,11 @@
 
 #include "base/rng.h"
 #include "recompute.h"
+#include "scenario.h"
 #include "unity.h"
 #include "wire/codec.h"
 
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +25,7 @@ static aisle_query_msg query;
 static aisle_path_msg answer, good;
 static recompute_report report;
 static long double deviation[RECOMPUTE_RULES];
-static long paths, with_zones, refused;
+static long paths, with_zones, refused, scenario_paths;
 static aisle_rng rng;
 
 static double drawn(double lo, double hi) {
@@ -252,6 +254,43 @@ static void test_larger_corner_zones_take_no_longer_and_no_more_energy(void) {
     }
 }
 
+// ---- scenarios
+
+// All legs in one path by each objective. Without a margin every scenario has a way; some gaps are too narrow for more.
+static void judge_scenario(const char *file, float margin) {
+    static aisle_layout_msg floor_plan;
+    TEST_ASSERT_TRUE_MESSAGE(scenario_read(file, margin, &floor_plan, &vehicle, &query), file);
+    open_door();
+    layout = floor_plan;
+    TEST_ASSERT_EQUAL(AISLE_OK, send_layout());
+    for (int8_t objective = 0; objective < 4; objective++) {
+        query.query_id = objective + 1;
+        query.options.objective = objective;
+        if (ask()) {
+            judge();
+            judge_energy();
+            scenario_paths++;
+        } else {
+            TEST_ASSERT_TRUE_MESSAGE(margin > 0.0F, file);
+            refused++;
+        }
+    }
+}
+
+static void test_paths_of_every_scenario_are_what_they_say_by_every_objective(void) {
+    glob_t found;
+    TEST_ASSERT_EQUAL(0, glob(AISLE_TEST_DATA "/scenarios/*.json", 0, NULL, &found));
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        if (strstr(found.gl_pathv[i], "optimum.json") == NULL) {
+            judge_scenario(found.gl_pathv[i], -1.0F);
+            judge_scenario(found.gl_pathv[i], 0.05F);
+        }
+    }
+    TEST_ASSERT_EQUAL(17, found.gl_pathc);
+    TEST_ASSERT_TRUE(scenario_paths >= 16 * 4 + 13 * 4); // with the margin all but the narrowest three
+    globfree(&found);
+}
+
 // ---- the judge itself
 
 // A path with arcs, by a slow zone and along a directed one.
@@ -335,6 +374,7 @@ int main(int argc, char **argv) {
     }
     UNITY_BEGIN();
     RUN_TEST(test_random_paths_of_all_drives_with_zones_are_what_they_say_for_every_seed);
+    RUN_TEST(test_paths_of_every_scenario_are_what_they_say_by_every_objective);
     RUN_TEST(test_the_judge_notices_each_figure_that_is_wrong);
     RUN_TEST(test_larger_corner_zones_take_no_longer_and_no_more_energy);
     const int failed = UNITY_END();

@@ -30,6 +30,8 @@ typedef struct job {
     int num_goals, goal;
     body body;
     recompute_report *out;
+    const aisle_polygon_msg *near[AISLE_LAYOUT_MAX_POLYGONS]; // of the part of a piece looked at
+    int nears;
 } job;
 
 static const real PI = 3.14159265358979323846264338327950288L;
@@ -135,11 +137,21 @@ static real speed_at(const piece *p, real u) {
 
 // ---- gaps
 
-static real point_edge(const real *p, const real *a, const real *b) {
+// fminl() and fmaxl() are calls.
+static real less(real a, real b) {
+    return b < a ? b : a;
+}
+
+static real more(real a, real b) {
+    return b > a ? b : a;
+}
+
+static real square_to_edge(const real *p, const real *a, const real *b) {
     const real ex = b[0] - a[0], ey = b[1] - a[1], square = ex * ex + ey * ey;
     real t = square > 0.0L ? ((p[0] - a[0]) * ex + (p[1] - a[1]) * ey) / square : 0.0L;
-    t = fminl(fmaxl(t, 0.0L), 1.0L);
-    return hypotl(p[0] - a[0] - t * ex, p[1] - a[1] - t * ey);
+    t = less(more(t, 0.0L), 1.0L);
+    const real dx = p[0] - a[0] - t * ex, dy = p[1] - a[1] - t * ey;
+    return dx * dx + dy * dy;
 }
 
 static real side(const real *a, const real *b, const real *p) {
@@ -163,17 +175,18 @@ static real outlines_gap(real (*v)[2], int n, real (*w)[2], int m) {
     if (holds(w, m, v[0]) || holds(v, n, w[0])) {
         return 0.0L;
     }
-    real gap = 1e9L;
+    real square = 1e18L;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < m; j++) {
             const real *a = v[i], *b = v[(i + 1) % n], *c = w[j], *d = w[(j + 1) % m];
             if (n > 1 && cross(a, b, c, d)) {
                 return 0.0L;
             }
-            gap = fminl(gap, fminl(point_edge(a, c, d), point_edge(c, a, b)));
+            square = less(square, square_to_edge(a, c, d));
+            square = n > 1 ? less(square, square_to_edge(c, a, b)) : square;
         }
     }
-    return gap;
+    return sqrtl(square);
 }
 
 static void take_polygon(const aisle_polygon_msg *polygon, real (*out)[2]) {
@@ -196,41 +209,225 @@ static real box_distance(const aisle_polygon_msg *polygon, const real *p) {
     real lo[2] = {1e9L, 1e9L}, hi[2] = {-1e9L, -1e9L};
     for (int i = 0; i < polygon->num_vertices; i++) {
         for (int k = 0; k < 2; k++) {
-            lo[k] = fminl(lo[k], (real)polygon->vertices[i][k]);
-            hi[k] = fmaxl(hi[k], (real)polygon->vertices[i][k]);
+            lo[k] = less(lo[k], (real)polygon->vertices[i][k]);
+            hi[k] = more(hi[k], (real)polygon->vertices[i][k]);
         }
     }
-    return hypotl(fmaxl(fmaxl(lo[0] - p[0], p[0] - hi[0]), 0.0L), fmaxl(fmaxl(lo[1] - p[1], p[1] - hi[1]), 0.0L));
+    const real dx = more(more(lo[0] - p[0], p[0] - hi[0]), 0.0L), dy = more(more(lo[1] - p[1], p[1] - hi[1]), 0.0L);
+    return sqrtl(dx * dx + dy * dy);
 }
 
 static bool is_solid(const aisle_polygon_msg *p) {
     return p->kind == AISLE_POLYGON_OBSTACLE || p->kind == AISLE_POLYGON_KEEPOUT;
 }
 
-// Gap of the body at a pose to a polygon (NULL: to everything solid and the bounds), at most cap.
-static real pose_gap(const job *j, const real *pose, const aisle_polygon_msg *only, real cap) {
+static real point_to_walls(const job *j, const real *p) {
     const recompute_world *world = j->world;
-    real v[VERTICES][2], w[VERTICES][2], gap = cap;
-    place(&j->body, pose, v);
-    for (int i = 0; only == NULL && i < j->body.n; i++) {
-        const real x = fminl(v[i][0] - (real)world->x_min, (real)world->x_max - v[i][0]);
-        const real y = fminl(v[i][1] - (real)world->y_min, (real)world->y_max - v[i][1]);
-        gap = fminl(gap, fminl(x, y) - j->body.radius);
+    const real x = less(p[0] - (real)world->x_min, (real)world->x_max - p[0]);
+    const real y = less(p[1] - (real)world->y_min, (real)world->y_max - p[1]);
+    return less(x, y) - j->body.radius;
+}
+
+static real walls_gap(const job *j, real (*v)[2]) {
+    real gap = 1e9L;
+    for (int i = 0; i < j->body.n; i++) {
+        gap = less(gap, point_to_walls(j, v[i]));
     }
-    for (int i = 0; i < world->count; i++) {
-        const aisle_polygon_msg *p = &world->polygons[i];
-        if ((only == NULL ? is_solid(p) : p == only) && box_distance(p, pose) - j->body.outer < gap) {
-            take_polygon(p, w);
-            gap = fminl(gap, outlines_gap(v, j->body.n, w, p->num_vertices) - j->body.radius);
+    return gap;
+}
+
+static real polygon_gap(const job *j, real (*v)[2], const aisle_polygon_msg *polygon) {
+    real w[VERTICES][2];
+    take_polygon(polygon, w);
+    return outlines_gap(v, j->body.n, w, polygon->num_vertices) - j->body.radius;
+}
+
+static bool counts(const aisle_polygon_msg *polygon, const aisle_polygon_msg *only) {
+    return only == NULL ? is_solid(polygon) : polygon == only;
+}
+
+// Keeps what the body can come nearer to than `cap` on the part [lo, hi] of the piece: `only`, or all that is solid.
+static void gather(job *j, const piece *p, real lo, real hi, const aisle_polygon_msg *only, real cap) {
+    const real reach = j->body.outer + 0.5L * (hi - lo) * p->length + cap;
+    real middle[3];
+    pose_at(p, 0.5L * (lo + hi), middle);
+    j->nears = 0;
+    for (int i = 0; i < j->world->count; i++) {
+        const aisle_polygon_msg *polygon = &j->world->polygons[i];
+        if (counts(polygon, only) && box_distance(polygon, middle) < reach) {
+            j->near[j->nears++] = polygon;
+        }
+    }
+}
+
+// Gap of the body at a pose to what was gathered and, if it is all that is solid, to the bounds; at most cap.
+static real pose_gap(const job *j, const real *pose, const aisle_polygon_msg *only, real cap) {
+    real v[VERTICES][2], gap = cap;
+    place(&j->body, pose, v);
+    gap = only == NULL ? less(gap, walls_gap(j, v)) : gap;
+    for (int i = 0; i < j->nears; i++) {
+        if (box_distance(j->near[i], pose) - j->body.outer < gap) {
+            gap = less(gap, polygon_gap(j, v, j->near[i]));
         }
     }
     return gap;
 }
 
+static real gap_at(const job *j, const piece *p, real u, const aisle_polygon_msg *polygon) {
+    real pose[3], v[VERTICES][2];
+    pose_at(p, u, pose);
+    place(&j->body, pose, v);
+    return polygon_gap(j, v, polygon);
+}
+
+// The same on the part [lo, hi] of a line to one polygon. The distance of convex bodies is convex in how far one of them
+// is moved, so golden section finds the least.
+static real line_gap(const job *j, const piece *p, real lo, real hi, const aisle_polygon_msg *polygon) {
+    static const real GOLDEN = 0.61803398874989484820458683436563812L;
+    real a = hi - GOLDEN * (hi - lo), b = lo + GOLDEN * (hi - lo);
+    real at_a = gap_at(j, p, a, polygon), at_b = gap_at(j, p, b, polygon), least = less(at_a, at_b);
+    while ((hi - lo) * p->length > 0.1L * RECOMPUTE_WITHIN) {
+        if (at_a < at_b) {
+            hi = b, b = a, at_b = at_a;
+            a = hi - GOLDEN * (hi - lo);
+            at_a = gap_at(j, p, a, polygon);
+        } else {
+            lo = a, a = b, at_a = at_b;
+            b = lo + GOLDEN * (hi - lo);
+            at_b = gap_at(j, p, b, polygon);
+        }
+        least = less(least, less(at_a, at_b));
+    }
+    return less(least, less(gap_at(j, p, lo, polygon), gap_at(j, p, hi, polygon)));
+}
+
+// The least gap on the part [lo, hi] of a line to what was gathered; at most `least`, that at its ends, where the bounds are
+// nearest.
+static real line_part_gap(const job *j, const piece *p, real lo, real hi, real least) {
+    for (int i = 0; i < j->nears; i++) {
+        least = less(least, line_gap(j, p, lo, hi, j->near[i]));
+    }
+    return least;
+}
+
+// ---- gaps of what turns about a centre as one: arcs and turns on the spot
+
+typedef struct orbit { // of a point: an arc about c
+    real c[2], radius, from, sweep;
+} orbit;
+
+static orbit orbit_of(const real *c, const real *q, real sweep) {
+    const real x = q[0] - c[0], y = q[1] - c[1];
+    return (orbit){{c[0], c[1]}, sqrtl(x * x + y * y), atan2l(y, x), sweep};
+}
+
+static bool is_on(const orbit *o, real angle) {
+    real ahead = fmodl(o->sweep < 0.0L ? o->from - angle : angle - o->from, 2.0L * PI);
+    ahead += ahead < 0.0L ? 2.0L * PI : 0.0L;
+    return ahead <= fabsl(o->sweep);
+}
+
+static void orbit_at(const orbit *o, real angle, real *p) {
+    p[0] = o->c[0] + o->radius * cosl(angle);
+    p[1] = o->c[1] + o->radius * sinl(angle);
+}
+
+static bool orbit_crosses(const orbit *o, const real *a, const real *b) {
+    const real ex = b[0] - a[0], ey = b[1] - a[1], square = ex * ex + ey * ey;
+    const real foot = ((o->c[0] - a[0]) * ex + (o->c[1] - a[1]) * ey) / square;
+    const real x = a[0] + foot * ex - o->c[0], y = a[1] + foot * ey - o->c[1];
+    const real left = o->radius * o->radius - x * x - y * y;
+    for (int k = -1; left >= 0.0L && k <= 1; k += 2) {
+        const real t = foot + k * sqrtl(left / square);
+        if (t >= 0.0L && t <= 1.0L && is_on(o, atan2l(a[1] + t * ey - o->c[1], a[0] + t * ex - o->c[0]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Square of the distance between an orbit and an edge: at the orbit's ends, the edge's, where they are parallel, or 0.
+static real orbit_to_edge(const orbit *o, const real *a, const real *b) {
+    const real *ends[2] = {a, b};
+    real p[2], square = 1e18L;
+    if (orbit_crosses(o, a, b)) {
+        return 0.0L;
+    }
+    for (int k = 0; k < 2; k++) {
+        orbit_at(o, o->from + k * o->sweep, p);
+        square = less(square, square_to_edge(p, a, b));
+        const real across = atan2l(a[0] - b[0], b[1] - a[1]) + k * PI;
+        orbit_at(o, across, p);
+        square = is_on(o, across) ? less(square, square_to_edge(p, a, b)) : square;
+        const real x = ends[k][0] - o->c[0], y = ends[k][1] - o->c[1], off = sqrtl(x * x + y * y) - o->radius;
+        square = is_on(o, atan2l(y, x)) ? less(square, off * off) : square;
+    }
+    return square;
+}
+
+// v: the body where it begins. Corners of the body against the polygon's edges, and the other way round.
+static real turning_gap(const job *j, const real *c, real sweep, real (*v)[2], const aisle_polygon_msg *polygon) {
+    const int n = j->body.n, m = polygon->num_vertices;
+    real w[VERTICES][2], square = 1e18L;
+    take_polygon(polygon, w);
+    for (int i = 0; i < n; i++) {
+        const orbit o = orbit_of(c, v[i], sweep);
+        for (int k = 0; k < m; k++) {
+            square = less(square, orbit_to_edge(&o, w[k], w[(k + 1) % m]));
+        }
+    }
+    for (int k = 0; n > 1 && k < m; k++) {
+        const orbit o = orbit_of(c, w[k], -sweep);
+        for (int i = 0; i < n; i++) {
+            square = less(square, orbit_to_edge(&o, v[i], v[(i + 1) % n]));
+        }
+    }
+    return sqrtl(square) - j->body.radius;
+}
+
+static real turning_walls_gap(const job *j, const real *c, real sweep, real (*v)[2]) {
+    real p[2], gap = 1e9L;
+    for (int i = 0; i < j->body.n; i++) {
+        const orbit o = orbit_of(c, v[i], sweep);
+        for (int k = 0; k < 4; k++) {
+            orbit_at(&o, 0.5L * PI * k, p);
+            gap = is_on(&o, 0.5L * PI * k) ? less(gap, point_to_walls(j, p)) : gap;
+        }
+    }
+    return gap;
+}
+
+// The least gap on the part [lo, hi] of an arc or turn; at most `least`, that at its ends.
+static real turning_part_gap(const job *j, const piece *p, real lo, real hi, const aisle_polygon_msg *only,
+                             real least) {
+    const real c[2] = {p->r != 0.0L ? p->cx : p->x, p->r != 0.0L ? p->cy : p->y};
+    const real sweep = (hi - lo) * p->turn;
+    real pose[3], v[VERTICES][2];
+    pose_at(p, lo, pose);
+    place(&j->body, pose, v);
+    least = only == NULL ? less(least, turning_walls_gap(j, c, sweep, v)) : least;
+    for (int i = 0; i < j->nears; i++) {
+        least = less(least, turning_gap(j, c, sweep, v, j->near[i]));
+    }
+    return least;
+}
+
 // The least gap on the part [lo, hi] of the piece, at most cap.
-static real part_gap(const job *j, const piece *p, real lo, real hi, const aisle_polygon_msg *only, real cap) {
+static real part_gap(job *j, const piece *p, real lo, real hi, const aisle_polygon_msg *only, real cap) {
     const real rate = p->length + j->body.reach * fabsl(p->turn);
     real from[DEPTH], to[DEPTH], pose[3], least = cap;
+    gather(j, p, lo, hi, only, cap);
+    for (int i = 0; i < 3; i++) { // a first bound leaves fewer to look at
+        pose_at(p, lo + 0.5L * i * (hi - lo), pose);
+        least = pose_gap(j, pose, only, least);
+    }
+    gather(j, p, lo, hi, only, least);
+    if (p->r == 0.0L && fabsl(p->turn) * j->body.reach < 0.1L * RECOMPUTE_WITHIN) {
+        return line_part_gap(j, p, lo, hi, least);
+    }
+    if (p->spot || (p->r != 0.0L && fabsl(p->turn - p->sweep) * (p->r + j->body.reach) < 0.1L * RECOMPUTE_WITHIN)) {
+        return turning_part_gap(j, p, lo, hi, only, least);
+    }
     int n = 1;
     from[0] = lo;
     to[0] = hi;
@@ -239,7 +436,7 @@ static real part_gap(const job *j, const piece *p, real lo, real hi, const aisle
         const real a = from[n], b = to[n], middle = 0.5L * (a + b), half = 0.5L * (b - a) * rate;
         pose_at(p, middle, pose);
         const real gap = pose_gap(j, pose, only, least + half);
-        least = fminl(least, gap);
+        least = less(least, gap);
         if (gap - half < least - RECOMPUTE_WITHIN && n + 2 <= DEPTH) {
             from[n] = middle;
             to[n++] = b;
@@ -292,7 +489,7 @@ static real allowed(const job *j, const piece *p) {
     return (real)j->path->waypoints[p->end].clearance < b->creep_gap ? fminl(v, b->creep) : v;
 }
 
-static real slowest_zone(const job *j, const piece *p) {
+static real slowest_zone(job *j, const piece *p) {
     real v = 1e9L;
     for (int i = 0; i < j->world->count; i++) {
         const aisle_polygon_msg *zone = &j->world->polygons[i];
@@ -305,7 +502,7 @@ static real slowest_zone(const job *j, const piece *p) {
 }
 
 // Time of the piece from its speeds alone, and the peak if it begins and ends at rest.
-static real piece_time(const job *j, const piece *p, real *peak) {
+static real piece_time(job *j, const piece *p, real *peak) {
     const body *b = &j->body;
     *peak = fmaxl(p->v0, p->v1);
     if (p->spot) {

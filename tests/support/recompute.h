@@ -2,8 +2,8 @@
 // src/ but the message structs, and knows no more than the contract (lcmtypes/) says.
 //
 // Pieces as waypoint_t tells them, arcs by their centre, libm. Gaps between the body and polygons by brute force over
-// vertices and edges; the least one on a piece by halving it until what a body point can move in the rest of a part leaves
-// no doubt beyond RECOMPUTE_WITHIN.
+// vertices and edges; the least one on a line by golden section, since it is convex there; on arcs and turns that the body
+// makes as one from the arcs of corners, exactly; on any other piece by halving it until what a body point can move in the rest of a part leaves no doubt beyond RECOMPUTE_WITHIN.
 #ifndef AISLE_TESTS_RECOMPUTE_H
 #define AISLE_TESTS_RECOMPUTE_H
 
