@@ -11,21 +11,8 @@
 #define BACK_COST 3.0     // of a metre back, in a projection
 #define BARRIER_SHARE 0.5 // of a barrier's height, that a place behind it must be better by
 
-enum { PHASES = 3 }; // of a trapezoid: up, level, down
-
-typedef struct phase { // in it v^2 is linear in the way
-    double way, v0, v1;
-} phase;
-
-typedef struct leg { // a piece as a motion
-    const aisle_waypoint_msg *from, *to;
-    double way;  // m, or rad of a turn on the spot
-    double rest; // s at rest before it begins
-    double time; // s it then takes
-    phase part[PHASES];
-    uint32_t parts; // 0: a wait
-    bool on_spot;
-} leg;
+typedef aisle_motion_phase phase;
+typedef aisle_motion_leg leg;
 
 static bool has(const aisle_waypoint_msg *w, int flag) {
     return (w->flags & flag) != 0;
@@ -88,7 +75,9 @@ static double least_time(const aisle_vehicle *vehicle, const leg *self) {
     return 2.0 * self->way / (v0 + v1);
 }
 
-static leg leg_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *w, const float *dwell, uint32_t i) {
+aisle_motion_leg aisle_motion_leg_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *w, const float *dwell,
+                                     uint32_t i) {
+    AISLE_ASSERT(i >= 1);
     const aisle_waypoint_msg *from = &w[i - 1], *to = &w[i];
     leg self = {.from = from, .to = to, .on_spot = is_on_spot(from)};
     const double v0 = (double)from->v, v1 = (double)to->v, span = (double)to->t - (double)from->t;
@@ -255,7 +244,7 @@ double aisle_motion_speed(const aisle_vehicle *vehicle, const aisle_waypoint_msg
     if (n == 1) {
         return 0.0;
     }
-    const leg it = leg_of(vehicle, w, dwell, place.piece);
+    const leg it = aisle_motion_leg_of(vehicle, w, dwell, place.piece);
     return it.on_spot ? 0.0 : leg_speed(&it, place.u);
 }
 
@@ -265,7 +254,7 @@ double aisle_motion_time(const aisle_vehicle *vehicle, const aisle_waypoint_msg 
     if (n == 1 || place.u >= 1.0) {
         return (double)w[place.piece].t;
     }
-    const leg it = leg_of(vehicle, w, dwell, place.piece);
+    const leg it = aisle_motion_leg_of(vehicle, w, dwell, place.piece);
     return (double)it.from->t + it.rest + leg_time(&it, place.u);
 }
 
@@ -287,7 +276,7 @@ aisle_place aisle_motion_at_time(const aisle_vehicle *vehicle, const aisle_waypo
     if (low + 1U == n) {
         return (aisle_place){low, 1.0};
     }
-    const leg it = leg_of(vehicle, w, dwell, low + 1U);
+    const leg it = aisle_motion_leg_of(vehicle, w, dwell, low + 1U);
     const double moving = t - (double)it.from->t - it.rest;
     if (moving < 0.0) {
         return low == 0 ? (aisle_place){1, 0.0} : (aisle_place){low, 1.0};
@@ -556,7 +545,7 @@ uint32_t aisle_motion_cut(const aisle_vehicle *vehicle, const aisle_waypoint_msg
     cutting cut = {.out = out, .capacity = capacity};
     double t0 = (double)w[place.piece].t; // in w, what is 0 in out
     if (n > 1) {
-        const leg it = leg_of(vehicle, w, dwell, place.piece);
+        const leg it = aisle_motion_leg_of(vehicle, w, dwell, place.piece);
         const bool leaves = place.u <= 0.0;
         if (leaves || is_spent(&it, place.u)) {
             const uint32_t i = leaves ? place.piece - 1U : place.piece;
@@ -682,14 +671,14 @@ aisle_place aisle_motion_rest(const aisle_vehicle *vehicle, const aisle_waypoint
             return it.place;
         }
         if (arrived && (it.left > 0.0)) {
-            const leg next = leg_of(vehicle, w, dwell, it.place.piece + 1U);
+            const leg next = aisle_motion_leg_of(vehicle, w, dwell, it.place.piece + 1U);
             if (it.left < next.rest) {
                 return it.place;
             }
             it.left -= next.rest;
             it.place = (aisle_place){it.place.piece + 1U, 0.0};
         }
-        const leg here = leg_of(vehicle, w, dwell, it.place.piece);
+        const leg here = aisle_motion_leg_of(vehicle, w, dwell, it.place.piece);
         const double brake = here.on_spot ? vehicle->alpha_max : vehicle->d_max;
         it.place.u = here.on_spot ? turn_leg_way(&it, &here, brake) : drive_leg_way(&it, &here, brake);
         arrived = it.place.u >= 1.0;

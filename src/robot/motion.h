@@ -27,7 +27,7 @@
 #include <stdint.h>
 
 #define AISLE_MOTION_REST 1e-6    // m/s; slower is at rest
-#define AISLE_MOTION_SNAP 2e-6    // m or rad; what is left of a piece below it counts as nothing when a path is cut
+#define AISLE_MOTION_SNAP 1e-7    // m or rad; what is left of a piece below it counts as nothing when a path is cut
 #define AISLE_MOTION_LEVER 0.5    // m a radian of heading weighs in a projection
 #define AISLE_MOTION_BARRIER 0.3  // m, see aisle_motion_project()
 #define AISLE_MOTION_CUT_EXTRA 3U // waypoints a cut may have more than its path from the place's piece on
@@ -36,6 +36,24 @@ typedef struct aisle_place {
     uint32_t piece;
     double u;
 } aisle_place;
+
+// A piece as a motion: rest, then phases in which the square of the speed (m/s; rad/s of a turn) is linear in the way.
+typedef struct aisle_motion_phase {
+    double way, v0, v1; // way > 0
+} aisle_motion_phase;
+typedef struct aisle_motion_leg {
+    const aisle_waypoint_msg *from, *to;
+    double way;  // m, or rad of a turn on the spot; 0: a wait
+    double rest; // s at rest before it begins
+    double time; // s it then takes; the phases by themselves may take a little less or more
+    aisle_motion_phase part[3];
+    uint32_t parts; // 0: a wait
+    bool on_spot;
+} aisle_motion_leg;
+
+// Piece i >= 1 of a path, that ends at w[i]. O(1).
+aisle_motion_leg aisle_motion_leg_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *w, const float *dwell,
+                                     uint32_t i);
 
 // Is it a place of a path of n waypoints?
 bool aisle_place_exists(uint32_t n, aisle_place place);
