@@ -76,6 +76,9 @@ static bool run_one(aisle_sim_batch *self, drive *d, uint64_t seed, FILE *out) {
         AISLE_OK) {
         return false;
     }
+    if (self->faults) {
+        aisle_sim_draw_faults(&d->drawn);
+    }
     d->drawn.setup.num_sources = self->blind ? 0 : d->drawn.setup.num_sources;
     aisle_sim_episode_start(&d->episode, &d->drawn.setup, &d->host);
     bool good = aisle_sim_drawn_prepare(&d->drawn, &d->episode) && aisle_sim_episode_run(&d->episode, message);

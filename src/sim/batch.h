@@ -16,6 +16,7 @@ typedef struct aisle_sim_batch {
     int64_t encounters;  // wanted
     int64_t episodes;    // at most
     bool told;           // one line for each drive that did not arrive, too
+    bool faults;         // some are drawn for each drive
     bool blind;          // nobody tells of the movers
     aisle_settings settings;
     // What came of it.

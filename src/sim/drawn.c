@@ -216,6 +216,12 @@ void aisle_sim_draw(aisle_sim_drawn *self, uint64_t seed, aisle_sim_kind kind, u
     draw_setup(&self->setup, seed, kind, num_movers, &rng);
 }
 
+void aisle_sim_draw_faults(aisle_sim_drawn *self) {
+    aisle_rng rng = aisle_sim_stream(self->setup.seed, 5);
+    uint32_t count = 1 + aisle_rng_below(&rng, 4);
+    aisle_sim_faults_draw(&self->setup.faults, &rng, count, 30.0);
+}
+
 static bool prepare(aisle_sim_episode *episode, aisle_channel channel, const void *message) {
     static uint8_t bytes[AISLE_MSG_DATAGRAM_MAX]; // one thread
     size_t size = 0;

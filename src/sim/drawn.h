@@ -23,6 +23,9 @@ typedef struct aisle_sim_drawn {
 // kind: of all movers; AISLE_SIM_KIND_COUNT: of all kinds but tracks. num_movers 0: 2 to 8.
 void aisle_sim_draw(aisle_sim_drawn *self, uint64_t seed, aisle_sim_kind kind, uint32_t num_movers);
 
+// Adds one to four faults, drawn from its seed, too.
+void aisle_sim_draw_faults(aisle_sim_drawn *self);
+
 // Prepares an episode that has been started. False: no memory.
 bool aisle_sim_drawn_prepare(const aisle_sim_drawn *self, aisle_sim_episode *episode);
 #endif

@@ -136,7 +136,7 @@ static double misfit(const aisle_sim_driver *self, uint32_t piece, aisle_pose2 p
 }
 
 static void locate(aisle_sim_driver *self, aisle_pose2 p) {
-    double best = INFINITY, way = 0.0, done;
+    double best = (double)INFINITY, way = 0.0, done;
     self->piece = 1;
     self->done = 0.0;
     for (uint32_t piece = 1; piece < count_of(self) && way <= SEARCH; piece++) {

@@ -171,6 +171,7 @@ static void hear_path(aisle_sim_episode *self, int64_t utime, const uint8_t *byt
         self->revisions++;
         count_cause(self, path);
     }
+    aisle_sim_faults_note_path(&self->setup.faults, aisle_sim_episode_seconds(self), path->status, path->cause);
     self->last_revision = path->path_revision;
     self->last_status = path->status;
     double delay = aisle_sim_uniform(&self->rng, self->setup.path_delay.least, self->setup.path_delay.most);
@@ -206,6 +207,55 @@ static aisle_sim_prey prey_of(const aisle_sim_episode *self) {
         .at = {c->pose.x, c->pose.y}, .velocity = aisle_vec2_scale(along, c->v), .reach = self->vehicle.outer_radius};
 }
 
+static bool is_on(const aisle_sim_episode *self, aisle_sim_fault_kind kind) {
+    return aisle_sim_faults_active(&self->setup.faults, kind, aisle_sim_episode_seconds(self)) != NULL;
+}
+
+static void command(aisle_sim_episode *self, int8_t what) {
+    aisle_command_msg msg = {.utime = self->now_us, .command_id = ++self->command_id, .command = what};
+    send_now(self, AISLE_CHANNEL_COMMAND, &msg);
+}
+
+static void begin_fault(aisle_sim_episode *self, const aisle_sim_fault *f) {
+    aisle_sim_chassis *c = &self->chassis;
+    aisle_vec2 along;
+    aisle_sincos(c->pose.theta, &along.y, &along.x);
+    if (f->kind == AISLE_SIM_HOLD) {
+        command(self, AISLE_COMMAND_HOLD);
+    } else if (f->kind == AISLE_SIM_PUSH) {
+        c->pose.x -= f->amount * along.y;
+        c->pose.y += f->amount * along.x;
+    } else if (f->kind == AISLE_SIM_POSE_JUMP) {
+        self->localiser.off.x += f->amount;
+    }
+}
+
+static void end_fault(aisle_sim_episode *self, const aisle_sim_fault *f) {
+    if (f->kind == AISLE_SIM_HOLD) {
+        command(self, AISLE_COMMAND_RESUME);
+    } else if (f->kind == AISLE_SIM_POSE_JUMP) {
+        self->localiser.off.x -= f->amount;
+    }
+}
+
+static void go_wrong(aisle_sim_episode *self, double speed) {
+    double now = aisle_sim_episode_seconds(self);
+    for (uint32_t i = 0; i < self->setup.faults.count; i++) {
+        aisle_sim_fault *f = &self->setup.faults.fault[i];
+        if (!f->begun && now >= f->at) {
+            f->begun = true;
+            begin_fault(self, f);
+        }
+        if (!f->ended && now >= f->at + f->lasts) {
+            f->ended = true;
+            end_fault(self, f);
+        }
+    }
+    if (speed <= AISLE_SIM_JUDGE_MOVING) {
+        aisle_sim_faults_note_rest(&self->setup.faults, now);
+    }
+}
+
 static void measure(aisle_sim_episode *self) {
     static aisle_obstacles_msg obstacles;
     aisle_pose_msg pose;
@@ -213,14 +263,17 @@ static void measure(aisle_sim_episode *self) {
     if (aisle_sim_localiser_step(&self->localiser, now, DT)) {
         double delay =
             aisle_sim_localiser_tell(&self->localiser, &self->chassis, self->now_us, self->scene.map_id, &pose);
-        post(self, AISLE_CHANNEL_POSE, &pose, delay);
+        pose.localized = is_on(self, AISLE_SIM_UNLOCALIZED) ? 0 : 1;
+        if (!is_on(self, AISLE_SIM_POSE_SILENT)) {
+            post(self, AISLE_CHANNEL_POSE, &pose, delay);
+        }
     }
     aisle_vec2 at = {self->chassis.pose.x, self->chassis.pose.y};
     for (int32_t i = 0; i < self->setup.num_sources; i++) {
         if (aisle_sim_source_step(&self->source[i], now)) {
             double delay = aisle_sim_source_tell(&self->source[i], &self->movers, at, self->now_us, self->scene.map_id,
                                                  &obstacles);
-            if (delay >= 0.0) {
+            if (delay >= 0.0 && !is_on(self, AISLE_SIM_OBSTACLES_SILENT)) {
                 post(self, AISLE_CHANNEL_OBSTACLES, &obstacles, delay);
             }
         }
@@ -240,7 +293,8 @@ static void control(aisle_sim_episode *self) {
     aisle_sim_estimate at = aisle_sim_localiser_estimate(&self->localiser, &self->chassis);
     aisle_sim_letter letter;
     while (aisle_sim_post_take(&self->to_vehicle, self->now_us, &letter)) {
-        if (aisle_msg_decode(AISLE_MSG_PATH, letter.bytes, letter.size, &self->heard, NULL) == AISLE_OK) {
+        if (!is_on(self, AISLE_SIM_PATHS_LOST) &&
+            aisle_msg_decode(AISLE_MSG_PATH, letter.bytes, letter.size, &self->heard, NULL) == AISLE_OK) {
             aisle_sim_driver_take_path(&self->driver, &self->heard, &at);
         }
         free(letter.bytes);
@@ -293,6 +347,7 @@ static void tick(aisle_sim_episode *self) {
     aisle_sim_judge_look(&self->judge, aisle_sim_episode_seconds(self), self->chassis.pose, self->chassis.v, speed,
                          &self->movers);
     count_stops(self, speed);
+    go_wrong(self, speed);
     measure(self);
     deliver(self);
     control(self);

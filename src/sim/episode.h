@@ -14,6 +14,7 @@
 #define AISLE_SIM_EPISODE_H
 
 #include "sim/driver.h"
+#include "sim/faults.h"
 #include "sim/host.h"
 #include "sim/judge.h"
 #include "sim/post.h"
@@ -43,6 +44,7 @@ typedef struct aisle_sim_setup {
     aisle_sim_pose_traits pose;
     aisle_sim_delay path_delay; // s, from planner to vehicle
     double latency, lag;        // s, of the chassis; 0: as usual
+    aisle_sim_faults faults;    // what goes wrong; what came of them is in the episode's copy
     FILE *truth;                // CSV of where everything truly was, 10 rows a second each; may be NULL
 } aisle_sim_setup;
 
@@ -83,9 +85,10 @@ typedef struct aisle_sim_episode {
     uint32_t num_causes;
     int64_t stops; // rests that the path driven first did not have: braked, or at the end of a partial path
     bool was_moving;
-    double busy_at; // s, when the planner last had something to do
-    bool arrived;   // all goals visited and the planner says so
-    bool failed;    // no memory
+    double busy_at;     // s, when the planner last had something to do
+    bool arrived;       // all goals visited and the planner says so
+    int32_t command_id; // of the last command sent
+    bool failed;        // no memory
 } aisle_sim_episode;
 
 // host: started, its `heard` aisle_sim_episode_hear() and its ctx this episode.

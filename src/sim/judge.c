@@ -22,7 +22,7 @@ void aisle_sim_judge_start(aisle_sim_judge *self, const aisle_sim_scene *scene, 
     self->reach = aisle_sim_outline_reach(&self->body);
     self->d_max = vehicle->d_max > 0.0F ? (double)vehicle->d_max : 0.5;
     self->stop_delay = LAG + (vehicle->reaction_time > 0.0F ? (double)vehicle->reaction_time : 0.3);
-    self->separation = self->separation_moving = INFINITY;
+    self->separation = self->separation_moving = (double)INFINITY;
     self->static_gap = SHOWN_GAP;
     self->t = self->arrival = self->rests_since = -1.0;
     for (uint32_t i = 0; i < AISLE_SIM_MOVERS_MAX; i++) {
@@ -89,15 +89,15 @@ static void note_contact(aisle_sim_judge *self, aisle_sim_watch *w, bool touches
     }
 }
 
-// The least gap to the mover since the last tick; INFINITY if it is above what is known to be the least.
+// The least gap to the mover since the last tick; infinite if it is above what is known to be the least.
 static double gap_since(const aisle_sim_judge *self, const aisle_sim_watch *w, aisle_pose2 pose,
                         const aisle_sim_mover *m, double known) {
     double near = aisle_vec2_length(aisle_vec2_of(pose.x - m->pose.x, pose.y - m->pose.y)) - self->reach - m->reach;
     double moved = travel(self->pose, pose, self->reach) + travel(w->pose, m->pose, m->reach);
     if (near - moved > known) {
-        return INFINITY;
+        return (double)INFINITY;
     }
-    double least = INFINITY;
+    double least = (double)INFINITY;
     double count = near - moved > 0.5 ? 1.0 : fmin(ceil(moved / AISLE_SIM_JUDGE_STEP) + 1.0, SAMPLES_MAX);
     for (double i = 1.0; i <= count && least > 0.0; i += 1.0) {
         aisle_sim_outline ours = aisle_sim_outline_at(&self->body, between(self->pose, pose, i / count));

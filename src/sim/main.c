@@ -31,6 +31,9 @@ static const char help[] =
     "  --time S        ends then; by default after ten times the way without movers and a minute\n"
     "  --room M        between vehicle and movers at first, 2 by default\n"
     "  --sources N     1 to 4 sources share the movers\n"
+    "  --faults LIST   KIND:AT:LASTS[:AMOUNT],...; kinds: pose_silent, unlocalized, pose_jump, obstacles_silent, "
+    "paths_lost,\n"
+    "                  push, hold. With --drawn and --batch: any word, and they are drawn\n"
     "  --bus URL       aisled on this LCM bus plans, in real time; \"\" is LCM's default\n"
     "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
     "  --json FILE     the figures as JSON\n"
@@ -40,7 +43,7 @@ static const char help[] =
     "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
 
 typedef struct arguments {
-    const char *bus, *drawn, *batch, *kind, *count, *drives;
+    const char *faults, *bus, *drawn, *batch, *kind, *count, *drives;
     bool told, blind;
     const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
     bool version, help;
@@ -77,8 +80,8 @@ static bool parse(arguments *out, int argc, char **argv, char *message) {
         {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},
         {"--drawn", NULL, &out->drawn},     {"--batch", NULL, &out->batch},   {"--kind", NULL, &out->kind},
         {"--count", NULL, &out->count},     {"--drives", NULL, &out->drives}, {"--bus", NULL, &out->bus},
-        {"--told", &out->told, NULL},       {"--blind", &out->blind, NULL},   {"--version", &out->version, NULL},
-        {"--help", &out->help, NULL},
+        {"--faults", NULL, &out->faults},   {"--told", &out->told, NULL},     {"--blind", &out->blind, NULL},
+        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -176,6 +179,9 @@ static int draw_one(const arguments *given) {
     int code = read_kind(given, &kind, &count);
     if (code == EXIT_GOOD) {
         aisle_sim_draw(&tool.drawn, seed, kind, (uint32_t)count);
+        if (given->faults != NULL) {
+            aisle_sim_draw_faults(&tool.drawn);
+        }
         tool.setup = tool.drawn.setup;
         tool.setup.num_sources = given->blind ? 0 : tool.setup.num_sources;
     }
@@ -199,6 +205,9 @@ static int read_setup(const arguments *given) {
     tool.setup.num_sources = given->blind ? 0 : (int32_t)sources;
     if (!read_movers(given->movers, &tool.setup)) {
         return complain(EXIT_USAGE, "not KIND:COUNT[:V_BOUND],...; see --help", "--movers");
+    }
+    if (given->faults != NULL && !aisle_sim_faults_read(&tool.setup.faults, given->faults)) {
+        return complain(EXIT_USAGE, "not KIND:AT:LASTS[:AMOUNT],...; see --help", "--faults");
     }
     return read_tracks(given);
 }
@@ -327,6 +336,7 @@ static int run_batch(const arguments *given) {
     batch->episodes = (int64_t)drives;
     batch->told = given->told;
     batch->blind = given->blind;
+    batch->faults = given->faults != NULL;
     double start = seconds_now();
     if (!aisle_sim_batch_run(batch, stdout)) {
         return complain(EXIT_TROUBLE, "memory gave out", NULL);

@@ -53,7 +53,7 @@ static double corner_to_hull(aisle_vec2 p, const aisle_sim_outline *o) {
     if (is_inside(p, o)) {
         return 0.0;
     }
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (uint32_t i = 0; i < o->n; i++) {
         least = fmin(least, to_segment(p, o->v[i], o->v[(i + 1) % o->n]));
     }
@@ -78,7 +78,7 @@ static bool edges_cross(const aisle_sim_outline *a, const aisle_sim_outline *b) 
 // Hulls that share no point are nearest at a corner of one of them; hulls that do have a corner inside the other or
 // edges that cross.
 static double hull_gap(const aisle_sim_outline *a, const aisle_sim_outline *b) {
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (uint32_t i = 0; i < a->n; i++) {
         least = fmin(least, corner_to_hull(a->v[i], b));
     }

@@ -39,6 +39,20 @@ static void text_of_paths(const aisle_sim_episode *e, FILE *out) {
     (void)fputc('\n', out);
 }
 
+static void text_of_faults(const aisle_sim_episode *e, FILE *out) {
+    for (uint32_t i = 0; i < e->setup.faults.count; i++) {
+        const aisle_sim_fault *f = &e->setup.faults.fault[i];
+        (void)fprintf(out, "fault %s at %.2f s for %.2f s:", aisle_sim_fault_name(f->kind), f->at, f->lasts);
+        if (f->answered >= 0.0) {
+            (void)fprintf(out, " %s/%s after %.3f s,", aisle_report_path_status(f->status),
+                          f->cause == 0 ? "-" : aisle_cause_name(f->cause), f->answered);
+        } else {
+            (void)fprintf(out, " never answered,");
+        }
+        (void)fprintf(out, f->rested >= 0.0 ? " at rest after %.3f s\n" : " never at rest\n", f->rested);
+    }
+}
+
 void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
     const aisle_sim_judge *judge = &e->judge;
     (void)fprintf(out, "seed %" PRIu64 ": %s, %d of %d goals, %.2f s", e->setup.seed,
@@ -57,6 +71,7 @@ void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
     (void)fputc('\n', out);
     text_of_contacts(judge, out);
     text_of_paths(e, out);
+    text_of_faults(e, out);
     const aisle_histogram *h = e->host->lcm != NULL ? &e->host->answers : &e->host->work;
     (void)fprintf(out, "%s, ms: p50 %.3f, p99 %.3f, max %.3f\n",
                   e->host->lcm != NULL ? "from message to answer" : "work of each input and deadline", ms(h, 0.5),
@@ -95,6 +110,22 @@ static void json_of_causes(const aisle_sim_episode *e, FILE *out) {
     (void)fprintf(out, "]");
 }
 
+static void json_of_faults(const aisle_sim_episode *e, FILE *out) {
+    (void)fprintf(out, ",\n  \"faults\": [");
+    for (uint32_t i = 0; i < e->setup.faults.count; i++) {
+        const aisle_sim_fault *f = &e->setup.faults.fault[i];
+        (void)fprintf(out, "%s\n    {\"kind\": \"%s\", \"at\": %.6g", i == 0 ? "" : ",", aisle_sim_fault_name(f->kind),
+                      f->at);
+        json_number("lasts", f->lasts, out);
+        json_number("answered", f->answered, out);
+        json_number("rested", f->rested, out);
+        (void)fprintf(out, ", \"status\": \"%s\", \"cause\": \"%s\"}",
+                      f->answered < 0.0 ? "" : aisle_report_path_status(f->status),
+                      f->answered < 0.0 || f->cause == 0 ? "" : aisle_cause_name(f->cause));
+    }
+    (void)fprintf(out, "]");
+}
+
 void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
     const aisle_sim_judge *judge = &e->judge;
     (void)fprintf(out, "{\"seed\": %" PRIu64 ", \"arrived\": %s, \"goals\": %d, \"visited\": %d", e->setup.seed,
@@ -116,6 +147,7 @@ void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
                   e->renewals, e->stops);
     json_of_causes(e, out);
     json_of_contacts(judge, out);
+    json_of_faults(e, out);
     const aisle_histogram *h = e->host->lcm != NULL ? &e->host->answers : &e->host->work;
     (void)fprintf(out, ",\n  \"%s\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}}\n",
                   e->host->lcm != NULL ? "answer_ms" : "work_ms", ms(h, 0.5), ms(h, 0.99), (double)h->max_us * 1e-3,

@@ -161,7 +161,7 @@ typedef struct extent {
 } extent;
 
 static extent extent_of(const aisle_sim_outline *body) {
-    extent e = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    extent e = {(double)INFINITY, (double)INFINITY, -(double)INFINITY, -(double)INFINITY};
     for (uint32_t i = 0; i < body->n; i++) {
         e.x0 = fmin(e.x0, body->v[i].x - body->radius);
         e.y0 = fmin(e.y0, body->v[i].y - body->radius);

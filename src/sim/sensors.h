@@ -39,7 +39,7 @@ typedef struct aisle_sim_localiser {
     aisle_sim_pose_traits traits;
     aisle_rng rng;
     aisle_sim_drift x, y, theta;
-    aisle_vec2 white;
+    aisle_vec2 white, off;    // off: a fault, 0 else
     double white_theta, next; // rad; s
     int32_t seq;
 } aisle_sim_localiser;

@@ -145,6 +145,42 @@ static void test_the_log_replays_byte_for_byte(void) {
     (void)fclose(log);
 }
 
+// ---- faults
+
+static double drive_with(const char *faults) {
+    aisle_sim_setup setup = aisle_sim_setup_usual(2);
+    TEST_ASSERT_TRUE(aisle_sim_faults_read(&setup.faults, faults));
+    run(&setup, NULL);
+    TEST_ASSERT_EQUAL_INT64(0, episode.judge.static_collisions);
+    return episode.arrived ? episode.judge.arrival : 0.0;
+}
+
+static void test_lost_paths_stop_the_vehicle_until_they_come_again(void) {
+    double plain = drive_with(""), late = drive_with("paths_lost:5:6");
+    TEST_ASSERT_EQUAL_INT64(1, episode.stops);
+    const aisle_sim_fault *f = &episode.setup.faults.fault[0];
+    TEST_ASSERT_TRUE(f->answered < 0.0);                        // the planner cannot know
+    TEST_ASSERT_TRUE(f->rested > 0.5 && f->rested < 1.0 + 4.0); // lease and braking
+    TEST_ASSERT_TRUE(late > plain + 2.0 && late < plain + 7.0);
+}
+
+static void test_hold_stops_and_resume_goes_on(void) {
+    double plain = drive_with(""), late = drive_with("hold:5:6");
+    TEST_ASSERT_TRUE(episode.setup.faults.fault[0].rested < 1.0 + 4.0);
+    TEST_ASSERT_TRUE(late > plain + 2.0);
+}
+
+static void test_a_silent_localiser_ends_the_lease(void) {
+    double plain = drive_with(""), late = drive_with("pose_silent:5:6");
+    TEST_ASSERT_TRUE(episode.setup.faults.fault[0].rested < 1.3 + 4.0);
+    TEST_ASSERT_TRUE(late > plain + 2.0);
+}
+
+static void test_a_push_is_steered_away(void) {
+    TEST_ASSERT_TRUE(drive_with("push:6:0:0.05") > 0.0);
+    TEST_ASSERT_TRUE(episode.judge.static_gap > 0.0);
+}
+
 static void test_what_a_setup_lacks_is_named(void) {
     aisle_sim_setup setup = aisle_sim_setup_usual(1);
     start(&setup, NULL);
@@ -192,6 +228,10 @@ int main(void) {
     RUN_TEST(test_an_empty_hall_is_crossed_on_time_for_20_of_20_seeds);
     RUN_TEST(test_a_seed_gives_the_same_log_and_another_one_another);
     RUN_TEST(test_the_log_replays_byte_for_byte);
+    RUN_TEST(test_lost_paths_stop_the_vehicle_until_they_come_again);
+    RUN_TEST(test_hold_stops_and_resume_goes_on);
+    RUN_TEST(test_a_silent_localiser_ends_the_lease);
+    RUN_TEST(test_a_push_is_steered_away);
     RUN_TEST(test_what_a_setup_lacks_is_named);
     RUN_TEST(test_reports_name_the_figures);
     return UNITY_END();

@@ -39,7 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--map", type=Path, metavar="FILE", help="map_server .yaml, scenario .json or MovingAI .map")
     parser.add_argument("--scenario", type=Path, metavar="FILE", help="hall, robot, start and goals of this scenario")
     parser.add_argument("--start", metavar="X,Y[,TH]", help="default: the scenario's")
-    parser.add_argument("--goal", action="append", metavar="X,Y[,TH]", help="several: visited in order; default: the scenario's")
+    parser.add_argument("--goal", action="append", metavar="X,Y[,TH]", help="several: in order; default: the scenario's")
     parser.add_argument("--any-heading", action="store_true", help="at every goal (the default where TH is not given)")
     parser.add_argument("--any-order", action="store_true", help="let the planner choose the order")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="run.log, sim.json, truth.csv, tracks.png")
