@@ -76,6 +76,9 @@ static bool run_one(aisle_sim_batch *self, drive *d, uint64_t seed, FILE *out) {
         AISLE_OK) {
         return false;
     }
+    if (self->units_per_ms > 0) {
+        (void)aisle_sim_host_slice(&d->host, self->units_per_ms, NULL);
+    }
     if (self->faults) {
         aisle_sim_draw_faults(&d->drawn);
     }

@@ -11,13 +11,14 @@
 
 typedef struct aisle_sim_batch {
     aisle_sim_kind kind;
-    uint32_t num_movers; // of each kind; 0: drawn
-    uint64_t first;      // seed
-    int64_t encounters;  // wanted
-    int64_t episodes;    // at most
-    bool told;           // one line for each drive that did not arrive, too
-    bool faults;         // some are drawn for each drive
-    bool blind;          // nobody tells of the movers
+    uint32_t num_movers;   // of each kind; 0: drawn
+    uint64_t first;        // seed
+    int64_t encounters;    // wanted
+    int64_t episodes;      // at most
+    bool told;             // one line for each drive that did not arrive, too
+    uint32_t units_per_ms; // planning takes time; 0: none
+    bool faults;           // some are drawn for each drive
+    bool blind;            // nobody tells of the movers
     aisle_settings settings;
     // What came of it.
     int64_t done, met, arrived, unreachable, with_collision, collisions, hall_collisions, contacts_at_rest;

@@ -41,7 +41,7 @@ aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_setting
     return status;
 }
 
-static int64_t clock_us(void) {
+int64_t aisle_sim_host_clock_us(void) {
     struct timespec t = {0, 0};
     (void)clock_gettime(CLOCK_MONOTONIC, &t);
     return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
@@ -64,10 +64,12 @@ void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime) {
         aisle_sim_host_bus_advance(self, utime);
         return;
     }
-    if (aisle_planner_next_deadline(self->engine.planner) <= utime) {
-        int64_t start = clock_us();
+    if (self->units_per_ms > 0) {
+        aisle_sim_host_slow_advance(self, utime);
+    } else if (aisle_planner_next_deadline(self->engine.planner) <= utime) {
+        int64_t start = aisle_sim_host_clock_us();
         aisle_replay_advance(&self->replay, utime);
-        aisle_histogram_add(&self->work, clock_us() - start);
+        aisle_histogram_add(&self->work, aisle_sim_host_clock_us() - start);
     }
     if (utime >= self->next_status_us) {
         tell_status(self, utime);
@@ -82,13 +84,19 @@ void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel chan
         return;
     }
     aisle_sim_host_advance(self, utime);
+    if (self->units_per_ms > 0) {
+        aisle_sim_host_slow_send(self, utime, channel, bytes, size);
+        return;
+    }
     aisle_sim_host_write_log(self, utime, channel, bytes, size);
-    int64_t start = clock_us();
+    int64_t start = aisle_sim_host_clock_us();
     aisle_replay_input(&self->replay, utime, channel, bytes, size);
-    aisle_histogram_add(&self->work, clock_us() - start);
+    aisle_histogram_add(&self->work, aisle_sim_host_clock_us() - start);
 }
 
 void aisle_sim_host_stop(aisle_sim_host *self) {
     aisle_sim_host_bus_stop(self);
+    aisle_record_close(&self->record);
+    aisle_sim_post_free(&self->waiting);
     aisle_engine_stop(&self->engine);
 }

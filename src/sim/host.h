@@ -6,6 +6,8 @@
 //     core   the planner in this process on the simulation's clock, fed by the same code as aisle-replay's (replay.h):
 //            each input acts at its time, what the planner does by itself at its deadline; planning takes no time on
 //            that clock. So a log replays to the same bytes by construction, and a seed gives the same log.
+//            Or at so many work units a millisecond (aisle_sim_host_slice()): then planning takes time, inputs wait
+//            for it as aisled's do, and the log is the flight recorder's (daemon/record.h), which replays, too.
 //     bus    aisled over LCM in real time: letting time pass waits for the computer's clock. aisled's own record
 //            (daemon/record.h) replays to the same bytes; this log holds what was on the bus.
 //
@@ -16,7 +18,9 @@
 #include "daemon/engine.h"
 #include "daemon/histogram.h"
 #include "daemon/log.h"
+#include "daemon/record.h"
 #include "replay/replay.h"
+#include "sim/post.h"
 
 // One message of the planner's: PATH, REPLY, STATUS. Valid during the call.
 typedef void (*aisle_sim_heard)(void *ctx, aisle_channel channel, int64_t utime, const uint8_t *bytes, size_t size);
@@ -41,7 +45,13 @@ typedef struct aisle_sim_host {
     aisle_replay replay;
     int64_t next_status_us;
     int32_t status_seq;
-    aisle_histogram work; // us of the computer's time for each input and each deadline
+    aisle_histogram work; // us of the computer's time for each input and each deadline, or each step
+    // core at a speed
+    uint32_t units_per_ms; // 0: planning takes no time
+    aisle_record record;
+    aisle_sim_post waiting;    // inputs that the planner does not take yet
+    int64_t clock_us, free_us; // how far it is worked; when the step under way ends
+    bool idle;
     // bus
     void *lcm; // NULL: a core host
     int fd;
@@ -57,6 +67,10 @@ typedef struct aisle_sim_host {
 aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_settings *settings, FILE *log,
                                        aisle_sim_heard heard, void *ctx, char *message);
 
+// From now on planning takes time: this many work units (1..1000000) a millisecond. record: a new file for the flight
+// record, NULL: none. False: it cannot be written.
+bool aisle_sim_host_slice(aisle_sim_host *self, uint32_t units_per_ms, const char *record);
+
 // A daemon on this bus ("": LCM's default). AISLE_ERR_ARG: it cannot be joined; message says so.
 aisle_status aisle_sim_host_start_bus(aisle_sim_host *self, const char *url, const char *prefix, FILE *log,
                                       aisle_sim_heard heard, void *ctx, char *message);
@@ -68,12 +82,16 @@ void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel chan
 void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime);
 
 // Files of this module alone.
+int64_t aisle_sim_host_clock_us(void); // the computer's, monotonic
 void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                               size_t size);
 void aisle_sim_host_bus_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                              size_t size);
 void aisle_sim_host_bus_advance(aisle_sim_host *self, int64_t utime);
 void aisle_sim_host_bus_stop(aisle_sim_host *self);
+void aisle_sim_host_slow_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
+                              size_t size);
+void aisle_sim_host_slow_advance(aisle_sim_host *self, int64_t utime);
 
 void aisle_sim_host_stop(aisle_sim_host *self);
 #endif

@@ -34,6 +34,7 @@ static const char help[] =
     "  --faults LIST   KIND:AT:LASTS[:AMOUNT],...; kinds: pose_silent, unlocalized, pose_jump, obstacles_silent, "
     "paths_lost,\n"
     "                  push, hold. With --drawn and --batch: any word, and they are drawn\n"
+    "  --units-per-ms N  planning takes time: so many work units a millisecond; 4000 are about a desktop core\n"
     "  --bus URL       aisled on this LCM bus plans, in real time; \"\" is LCM's default\n"
     "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
     "  --json FILE     the figures as JSON\n"
@@ -43,7 +44,7 @@ static const char help[] =
     "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
 
 typedef struct arguments {
-    const char *faults, *bus, *drawn, *batch, *kind, *count, *drives;
+    const char *units, *faults, *bus, *drawn, *batch, *kind, *count, *drives;
     bool told, blind;
     const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
     bool version, help;
@@ -60,6 +61,7 @@ static struct {
     aisle_sim_episode episode;
     aisle_log_reader log;
     FILE *in, *out, *json;
+    uint64_t units; // a millisecond; 0: planning takes no time
 } tool;
 
 void aisle_assert_failed(const char *file, int line, const char *condition) {
@@ -74,14 +76,14 @@ static int complain(int code, const char *what, const char *name) {
 
 static bool parse(arguments *out, int argc, char **argv, char *message) {
     const aisle_option options[] = {
-        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks}, {"--place", NULL, &out->place},
-        {"--seed", NULL, &out->seed},       {"--time", NULL, &out->time},     {"--room", NULL, &out->room},
-        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},       {"--json", NULL, &out->json},
-        {"--truth", NULL, &out->truth},     {"--prefix", NULL, &out->prefix}, {"--config", NULL, &out->config},
-        {"--drawn", NULL, &out->drawn},     {"--batch", NULL, &out->batch},   {"--kind", NULL, &out->kind},
-        {"--count", NULL, &out->count},     {"--drives", NULL, &out->drives}, {"--bus", NULL, &out->bus},
-        {"--faults", NULL, &out->faults},   {"--told", &out->told, NULL},     {"--blind", &out->blind, NULL},
-        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
+        {"--movers", NULL, &out->movers},      {"--tracks", NULL, &out->tracks},   {"--place", NULL, &out->place},
+        {"--seed", NULL, &out->seed},          {"--time", NULL, &out->time},       {"--room", NULL, &out->room},
+        {"--sources", NULL, &out->sources},    {"--out", NULL, &out->out},         {"--json", NULL, &out->json},
+        {"--truth", NULL, &out->truth},        {"--prefix", NULL, &out->prefix},   {"--config", NULL, &out->config},
+        {"--drawn", NULL, &out->drawn},        {"--batch", NULL, &out->batch},     {"--kind", NULL, &out->kind},
+        {"--count", NULL, &out->count},        {"--drives", NULL, &out->drives},   {"--bus", NULL, &out->bus},
+        {"--units-per-ms", NULL, &out->units}, {"--faults", NULL, &out->faults},   {"--told", &out->told, NULL},
+        {"--blind", &out->blind, NULL},        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -265,8 +267,14 @@ static aisle_status start_host(char *message) {
         return aisle_sim_host_start_bus(&tool.host, tool.given.bus, tool.settings.prefix, tool.out,
                                         aisle_sim_episode_hear, &tool.episode, message);
     }
-    return aisle_sim_host_start_core(&tool.host, &tool.settings, tool.out, aisle_sim_episode_hear, &tool.episode,
-                                     message);
+    aisle_status status =
+        aisle_sim_host_start_core(&tool.host, &tool.settings, tool.out, aisle_sim_episode_hear, &tool.episode, message);
+    if (status == AISLE_OK && tool.units > 0 &&
+        !aisle_sim_host_slice(&tool.host, (uint32_t)tool.units, tool.given.out)) {
+        (void)snprintf(message, AISLE_SETTINGS_MESSAGE_LEN, "%s: %s", tool.given.out, strerror(errno));
+        return AISLE_ERR_CAPACITY;
+    }
+    return status;
 }
 
 static int run(void) {
@@ -292,7 +300,7 @@ static int run(void) {
 
 static int run_files(void) {
     const arguments *given = &tool.given;
-    if (!open_file(given->log, "rb", &tool.in) || !open_file(given->out, "wb", &tool.out) ||
+    if (!open_file(given->log, "rb", &tool.in) || !open_file(tool.units > 0 ? NULL : given->out, "wb", &tool.out) ||
         !open_file(given->json, "w", &tool.json) || !open_file(given->truth, "w", &tool.setup.truth)) {
         return EXIT_TROUBLE;
     }
@@ -337,6 +345,7 @@ static int run_batch(const arguments *given) {
     batch->told = given->told;
     batch->blind = given->blind;
     batch->faults = given->faults != NULL;
+    batch->units_per_ms = (uint32_t)tool.units;
     double start = seconds_now();
     if (!aisle_sim_batch_run(batch, stdout)) {
         return complain(EXIT_TROUBLE, "memory gave out", NULL);
@@ -362,6 +371,9 @@ static int start(void) {
     if (given->prefix != NULL &&
         aisle_settings_set(&tool.settings, "bus", "prefix", given->prefix, message) != AISLE_OK) {
         return complain(EXIT_USAGE, message, NULL);
+    }
+    if (!read_whole(given->units, &tool.units) || tool.units > 1000000) {
+        return complain(EXIT_USAGE, "not a whole number from 0 to 1000000", "--units-per-ms");
     }
     if (given->batch != NULL) {
         return run_batch(given);

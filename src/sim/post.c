@@ -18,16 +18,21 @@ static bool is_before(const aisle_sim_letter *a, const aisle_sim_letter *b) {
     return a->due_us < b->due_us || (a->due_us == b->due_us && a->order < b->order);
 }
 
-bool aisle_sim_post_take(aisle_sim_post *self, int64_t now_us, aisle_sim_letter *out) {
+aisle_sim_letter *aisle_sim_post_first(aisle_sim_post *self) {
     uint32_t first = 0;
     for (uint32_t i = 1; i < self->count; i++) {
         first = is_before(&self->letter[i], &self->letter[first]) ? i : first;
     }
-    if (self->count == 0 || self->letter[first].due_us > now_us) {
+    return self->count > 0 ? &self->letter[first] : NULL;
+}
+
+bool aisle_sim_post_take(aisle_sim_post *self, int64_t now_us, aisle_sim_letter *out) {
+    aisle_sim_letter *first = aisle_sim_post_first(self);
+    if (first == NULL || first->due_us > now_us) {
         return false;
     }
-    *out = self->letter[first];
-    self->letter[first] = self->letter[--self->count];
+    *out = *first;
+    *first = self->letter[--self->count];
     return true;
 }
 

@@ -31,5 +31,8 @@ bool aisle_sim_post_send(aisle_sim_post *self, int64_t due_us, aisle_channel cha
 // The first letter due at now_us or before; its bytes are the caller's to free. False: none.
 bool aisle_sim_post_take(aisle_sim_post *self, int64_t now_us, aisle_sim_letter *out);
 
+// The first letter, left where it is; NULL: none. Valid until the next call.
+aisle_sim_letter *aisle_sim_post_first(aisle_sim_post *self);
+
 void aisle_sim_post_free(aisle_sim_post *self);
 #endif
