@@ -168,6 +168,15 @@ typedef struct aisle_verify_piece { // from waypoint i-1 to i; verify_piece.c
     bool on_spot, reverse;
 } aisle_verify_piece;
 
+// How fast a piece is driven: the square of the speed is linear in the way between both ends, or where it rests at both,
+// up to the peak and down again. In m, of a turn in rad; verify_limits.c.
+typedef struct aisle_verify_speeds {
+    double length;
+    double v0, v1; // 1/s
+    double peak, up, down;
+    bool rests; // at both ends
+} aisle_verify_speeds;
+
 typedef struct aisle_verify_motion { // intervals of the piece in hand; verify_motion.c
     double lo;                       // where the interval in front begins, [0, 1] of the piece
     double hi[AISLE_VERIFY_DEPTH];   // where those not yet proved end, the next on top

@@ -71,37 +71,36 @@ void aisle_verify_base_begin(aisle_verify *self) {
 
 // ---- speeds
 
-static double square_out(const aisle_verify *self, double further) {
-    const aisle_verify_walk *walk = &self->walk;
-    const aisle_waypoint_msg *to = &self->request.base->w[walk->at];
-    return aisle_verify_speed_square(self->request.vehicle, to - 1, to, &walk->piece, walk->done + further);
+static aisle_verify_speeds speeds_out(const aisle_verify *self) {
+    const aisle_waypoint_msg *to = &self->request.base->w[self->walk.at];
+    return aisle_verify_speeds_of(self->request.vehicle, to - 1, to, &self->walk.piece);
 }
 
-static double square_new(const aisle_verify *self, double further) {
+static aisle_verify_speeds speeds_new(const aisle_verify *self) {
     const aisle_waypoint_msg *to = &self->path->waypoints[self->at];
-    return aisle_verify_speed_square(self->request.vehicle, to - 1, to, &self->piece, self->walk.done_new + further);
+    return aisle_verify_speeds_of(self->request.vehicle, to - 1, to, &self->piece);
 }
 
-// No faster than it was or than v_start, both APART off each other at worst.
+// No faster than it was or than v_start lets it, both APART off each other at worst.
 static bool is_slow_enough(const aisle_verify *self, double further) {
     const aisle_vehicle *vehicle = self->request.vehicle;
+    const aisle_verify_speeds out = speeds_out(self), now = speeds_new(self);
     const double v_start = self->request.v_start, more = 1.0 + VERIFY_TOLERANCE;
-    const double limit = aisle_max(square_out(self, further), v_start * v_start);
+    const double limit = aisle_max(aisle_verify_speed_square(&out, self->walk.done + further), v_start * v_start);
     const double slack = 2.0 * APART * aisle_max(vehicle->a_max, vehicle->d_max);
-    return square_new(self, further) <= limit * more * more + slack;
+    return aisle_verify_speed_square(&now, self->walk.done_new + further) <= limit * more * more + slack;
 }
 
 // How far on both squares are linear, and the old one on one side of v_start's.
 static double step_length(const aisle_verify *self) {
     const aisle_verify_walk *walk = &self->walk;
-    const aisle_vehicle *vehicle = self->request.vehicle;
-    const aisle_waypoint_msg *then = &self->request.base->w[walk->at], *now = &self->path->waypoints[self->at];
-    double step = aisle_verify_speed_bend(vehicle, then - 1, then, &walk->piece, walk->done + SNAP) - walk->done;
-    step = aisle_min(step, aisle_verify_speed_bend(vehicle, now - 1, now, &self->piece, walk->done_new + SNAP) -
-                               walk->done_new);
+    const aisle_verify_speeds out = speeds_out(self), now = speeds_new(self);
+    double step = aisle_verify_speed_bend(&out, walk->done + SNAP) - walk->done;
+    step = aisle_min(step, aisle_verify_speed_bend(&now, walk->done_new + SNAP) - walk->done_new);
     step = aisle_min(step, walk->left);
     const double square = self->request.v_start * self->request.v_start;
-    const double here = square_out(self, 0.0) - square, there = square_out(self, step) - square;
+    const double here = aisle_verify_speed_square(&out, walk->done) - square;
+    const double there = aisle_verify_speed_square(&out, walk->done + step) - square;
     if ((here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0)) {
         const double crossing = step * (here / (here - there));
         step = crossing > SNAP ? crossing : step;

@@ -50,28 +50,47 @@ void aisle_verify_time_piece(const aisle_vehicle *vehicle, const aisle_waypoint_
     }
 }
 
-// Up at a_max to the peak, down at d_max from it, where the piece is at rest at both ends.
-double aisle_verify_speed_square(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
-                                 const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way) {
-    const double left = aisle_max(piece->length - way, 0.0), v0 = (double)from->v, v1 = (double)to->v;
-    AISLE_ASSERT(!piece->on_spot && way >= 0.0);
-    if (!is_at_rest(from) || !is_at_rest(to)) {
-        return v0 * v0 + (v1 * v1 - v0 * v0) * aisle_min(way / piece->length, 1.0); // length > VERIFY_SAME_PLACE
+aisle_verify_speeds aisle_verify_speeds_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                                           const aisle_waypoint_msg *to, const aisle_verify_piece *piece) {
+    if (piece->on_spot) {
+        const double up = vehicle->alpha_max;
+        return (aisle_verify_speeds){fabs(piece->turn), 0.0, 0.0, vehicle->omega_max, up, up, true};
     }
-    const double ramps = 2.0 * aisle_min(vehicle->a_max * way, vehicle->d_max * left);
-    return piece->peak < sqrt(ramps) ? piece->peak * piece->peak : ramps;
+    return (aisle_verify_speeds){.length = piece->length,
+                                 .v0 = (double)from->v,
+                                 .v1 = (double)to->v,
+                                 .peak = piece->peak,
+                                 .up = vehicle->a_max,
+                                 .down = vehicle->d_max,
+                                 .rests = is_at_rest(from) && is_at_rest(to)};
 }
 
-double aisle_verify_speed_bend(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
-                               const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way) {
-    if (!is_at_rest(from) || !is_at_rest(to)) {
-        return piece->length;
+double aisle_verify_speed_square(const aisle_verify_speeds *speeds, double way) {
+    const double left = aisle_max(speeds->length - way, 0.0), v0 = speeds->v0, v1 = speeds->v1;
+    AISLE_ASSERT(way >= 0.0);
+    if (!speeds->rests) {
+        return v0 * v0 + (v1 * v1 - v0 * v0) * aisle_min(way / speeds->length, 1.0); // length > VERIFY_SAME_PLACE
     }
-    const double up = vehicle->a_max, down = vehicle->d_max, middle = piece->length * down / (up + down);
+    const double ramps = 2.0 * aisle_min(speeds->up * way, speeds->down * left);
+    return speeds->peak < sqrt(ramps) ? speeds->peak * speeds->peak : ramps;
+}
+
+double aisle_verify_speed_bend(const aisle_verify_speeds *speeds, double way) {
+    if (!speeds->rests) {
+        return speeds->length;
+    }
+    const double up = speeds->up, down = speeds->down, middle = speeds->length * down / (up + down);
     const double square = 2.0 * up * middle; // that of the triangle
-    const double peak = piece->peak < sqrt(square) ? piece->peak * piece->peak : square;
-    const double first = 0.5 * peak / up, second = piece->length - 0.5 * peak / down;
-    return way < first ? first : (way < second ? second : piece->length);
+    const double peak = speeds->peak < sqrt(square) ? speeds->peak * speeds->peak : square;
+    const double first = 0.5 * peak / up, second = speeds->length - 0.5 * peak / down;
+    return way < first ? first : (way < second ? second : speeds->length);
+}
+
+double aisle_verify_speed_time(const aisle_verify_speeds *speeds) {
+    if (speeds->rests) {
+        return trapezoid_time(speeds->length, speeds->peak, speeds->up, speeds->down);
+    }
+    return 2.0 * speeds->length / (speeds->v0 + speeds->v1); // one of them above VERIFY_REST
 }
 
 static bool turn_time_fits(const aisle_vehicle *vehicle, const aisle_verify_piece *piece, double slack) {

@@ -39,13 +39,18 @@ void aisle_verify_next_piece(aisle_verify *self);
 void aisle_verify_time_piece(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
                              double dwell, bool most, aisle_verify_piece *piece);
 
-// Square of the speed (m2/s2) `way` m behind the first end of a piece that moves and is timed.
-double aisle_verify_speed_square(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
-                                 const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way);
+// How fast a timed piece is driven. A turn is the fastest there is.
+aisle_verify_speeds aisle_verify_speeds_of(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
+                                           const aisle_waypoint_msg *to, const aisle_verify_piece *piece);
 
-// Up to where (m from the first end, > way) that square is linear in the way.
-double aisle_verify_speed_bend(const aisle_vehicle *vehicle, const aisle_waypoint_msg *from,
-                               const aisle_waypoint_msg *to, const aisle_verify_piece *piece, double way);
+// Square of the speed `way` behind the first end.
+double aisle_verify_speed_square(const aisle_verify_speeds *speeds, double way);
+
+// Up to where (from the first end, > way if that is not the last one) that square is linear.
+double aisle_verify_speed_bend(const aisle_verify_speeds *speeds, double way);
+
+// s it takes from end to end, times as they are not asked.
+double aisle_verify_speed_time(const aisle_verify_speeds *speeds);
 
 // What is wrong with waypoint i taken alone.
 aisle_verify_fault aisle_verify_waypoint_fault(const aisle_verify *self, uint32_t i);

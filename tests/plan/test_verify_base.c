@@ -11,40 +11,9 @@ static void empty_world(void) {
     world_build();
 }
 
-static bool turns_at(int i) {
-    return (path.waypoints[i].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
-}
-
-static bool reverses_at(int i) {
-    return i > 0 && i + 1 < path.num_waypoints &&
-           ((path.waypoints[i].flags ^ path.waypoints[i + 1].flags) & AISLE_WAYPOINT_REVERSE) != 0;
-}
-
-// Speeds well below every limit, so that others may be tried: at most v (backwards 0.2), 0.7 of the accelerations. What is
-// at rest at both ends is driven with all of them, to 0.2 m/s.
-static void drive_gently(double v) {
-    const int n = path.num_waypoints;
-    for (int i = 0; i < n; i++) {
-        const bool rests = i == 0 || i + 1 == n || turns_at(i) || turns_at(i - 1) || reverses_at(i);
-        const bool back =
-            ((path.waypoints[i].flags | path.waypoints[i + 1 < n ? i + 1 : i].flags) & AISLE_WAYPOINT_REVERSE) != 0;
-        path.waypoints[i].v = rests ? 0.0F : (float)(back ? fmin(v, 0.2) : v);
-    }
-    for (int i = 1; i < n; i++) {
-        const double v0 = (double)path.waypoints[i - 1].v, most = sqrt(v0 * v0 + 0.7 * (double)stretch_at(i).length);
-        path.waypoints[i].v = (float)fmin((double)path.waypoints[i].v, most);
-    }
-    for (int i = n - 1; i > 0; i--) {
-        const double v1 = (double)path.waypoints[i].v, most = sqrt(v1 * v1 + 0.7 * (double)stretch_at(i).length);
-        path.waypoints[i - 1].v = (float)fmin((double)path.waypoints[i - 1].v, most);
-    }
-    path_retime(0.2);
-    path_seal();
-}
-
 static void end_gently(double v) {
     path_end();
-    drive_gently(v);
+    path_drive_gently(v);
 }
 
 // The path is out; a base begins at the place and ends `reach` m later.
