@@ -138,6 +138,7 @@ bool aisle_band_walk_next(aisle_band_walk *self, aisle_band_part *part) {
     const double sum = sqrt(part->q0) + sqrt(part->q1);
     if (!(sum > 0.0)) { // capped to a stand
         self->stands = true;
+        part->x1 = part->x0;
         return false;
     }
     const double made = part->x1 - part->x0, stretch = aisle_max(self->leg.time / self->natural, 1.0);
@@ -154,12 +155,12 @@ bool aisle_band_walk_next(aisle_band_walk *self, aisle_band_part *part) {
 
 // ---- along a part
 
-static double square_in(const aisle_band_part *part, double x) {
+double aisle_band_part_square(const aisle_band_part *part, double x) {
     return part->q0 + (part->q1 - part->q0) * ((x - part->x0) / (part->x1 - part->x0));
 }
 
 double aisle_band_part_time(const aisle_band_part *part, double x) {
-    const double v0 = sqrt(part->q0), v1 = sqrt(part->q1), v = sqrt(aisle_max(square_in(part, x), 0.0));
+    const double v0 = sqrt(part->q0), v1 = sqrt(part->q1), v = sqrt(aisle_max(aisle_band_part_square(part, x), 0.0));
     const double share = (x - part->x0) / (part->x1 - part->x0);
     return x > part->x0 ? part->t0 + (part->t1 - part->t0) * share * (v0 + v1) / (v0 + v) : part->t0;
 }
@@ -169,6 +170,14 @@ double aisle_band_part_at(const aisle_band_part *part, double t) {
     const double natural = 2.0 * made / (v0 + v1), time = natural * (t - part->t0) / (part->t1 - part->t0);
     const double a = (part->q1 - part->q0) / (2.0 * made);
     return aisle_clamp(part->x0 + time * (v0 + 0.5 * a * time), part->x0, part->x1);
+}
+
+aisle_place aisle_band_walk_place(const aisle_band_walk *self, const aisle_band_part *part, double x) {
+    double end = self->way; // of the part, on the piece
+    for (uint32_t k = 0; k < self->phase; k++) {
+        end += self->leg.part[k].way;
+    }
+    return (aisle_place){self->piece, aisle_clamp((end - (part->x1 - x)) / self->leg.way, 0.0, 1.0)};
 }
 
 // ---- the band
@@ -200,7 +209,7 @@ static double until_of(const law *self, double x) {
         b = (x - 0.5 * (part->q0 - slope * part->x0) / self->decel) / gain;
     }
     b = aisle_clamp(b, self->lo, self->hi);
-    return aisle_band_part_time(part, b) + sqrt(aisle_max(square_in(part, b), 0.0)) / self->decel;
+    return aisle_band_part_time(part, b) + sqrt(aisle_max(aisle_band_part_square(part, b), 0.0)) / self->decel;
 }
 
 typedef struct sweep {
@@ -281,7 +290,7 @@ static void put_up_to(sweep *self, const law *by, double x) {
 static double begin_braking(sweep *self, const aisle_band_part *part) {
     const double t = aisle_max(part->t0, self->first);
     const double b = part->t0 < self->first ? aisle_band_part_at(part, self->first) : part->x0;
-    const double square = aisle_max(square_in(part, b), 0.0);
+    const double square = aisle_max(aisle_band_part_square(part, b), 0.0);
     const law follow = {.kind = FOLLOWS, .part = part};
     const law brake = {.kind = BRAKES, .x = b, .square = square, .t = t, .decel = self->decel};
     put_up_to(self, &follow, b);
@@ -303,8 +312,8 @@ static bool sweep_part(sweep *self, const aisle_band_part *part, double *end, do
     const bool is_last = part->t1 >= self->last;
     const double to = aisle_max(is_last ? aisle_band_part_at(part, self->last) : part->x1, from);
     const law rest = {.kind = RESTS, .part = part, .lo = from, .hi = to, .decel = self->decel};
-    *end = to + 0.5 * aisle_max(square_in(part, to), 0.0) / self->decel;
-    *until = aisle_band_part_time(part, to) + sqrt(aisle_max(square_in(part, to), 0.0)) / self->decel;
+    *end = to + 0.5 * aisle_max(aisle_band_part_square(part, to), 0.0) / self->decel;
+    *until = aisle_band_part_time(part, to) + sqrt(aisle_max(aisle_band_part_square(part, to), 0.0)) / self->decel;
     put_up_to(self, &rest, *end);
     return !is_last;
 }

@@ -81,6 +81,10 @@ bool aisle_band_walk_run(aisle_band_walk *self);
 double aisle_band_part_time(const aisle_band_part *part, double x);
 double aisle_band_part_at(const aisle_band_part *part, double t);
 
+// Square of its speed at x of a part; and what place x of the part last got is.
+double aisle_band_part_square(const aisle_band_part *part, double x);
+aisle_place aisle_band_walk_place(const aisle_band_walk *self, const aisle_band_part *part, double x);
+
 // Fills the band.
 void aisle_band_make(aisle_band *self, const aisle_band_motion *motion);
 

@@ -366,16 +366,6 @@ static void step_mover(aisle_pace *self, uint32_t *spent) {
 
 // ---- the whole
 
-static void take_dwell(aisle_pace *self) {
-    const aisle_pace_request *request = &self->request;
-    memset(self->dwell, 0, AISLE_PATH_MAX_WAYPOINTS * sizeof self->dwell[0]);
-    for (uint32_t k = request->at.piece; k < request->n && request->dwell != NULL; k++) {
-        if (self->n >= request->n - k) { // else waypoint k is behind
-            self->dwell[self->n - (request->n - k)] = request->dwell[k];
-        }
-    }
-}
-
 void aisle_pace_start(aisle_pace *self, const aisle_pace_request *request, aisle_path_msg *path) {
     AISLE_ASSERT(request->n >= 1 && aisle_place_exists(request->n, request->at) && request->w != path->waypoints);
     AISLE_ASSERT(request->v >= 0.0 && request->lease > 0.0 && request->first < AISLE_PACE_LEVELS);
@@ -391,7 +381,7 @@ void aisle_pace_start(aisle_pace *self, const aisle_pace_request *request, aisle
         end(self, AISLE_ERR_CAPACITY);
         return;
     }
-    take_dwell(self);
+    aisle_motion_cut_dwell(request->dwell, request->n, request->at, self->n, self->dwell);
     const aisle_waypoint_msg *first = &path->waypoints[0];
     const bool rests = self->n == 1 || (first->flags & AISLE_WAYPOINT_STOP) != 0 || self->dwell[0] > 0.0F;
     self->v = rests || request->v < AISLE_PACE_RESTING ? 0.0 : aisle_min(request->v, AISLE_VEHICLE_SPEED_MAX);

@@ -569,6 +569,14 @@ uint32_t aisle_motion_cut(const aisle_vehicle *vehicle, const aisle_waypoint_msg
     return cut.overflow ? 0 : cut.n;
 }
 
+void aisle_motion_cut_dwell(const float *dwell, uint32_t n, aisle_place place, uint32_t left, float *out) {
+    AISLE_ASSERT(aisle_place_exists(n, place));
+    for (uint32_t i = 0; i < left; i++) { // counted from the end: the last ones are the same
+        const bool is_old = left - i <= n - place.piece;
+        out[i] = is_old && dwell != NULL ? dwell[n - (left - i)] : 0.0F;
+    }
+}
+
 // ---- braking
 
 typedef struct driving { // a vehicle on its way to rest

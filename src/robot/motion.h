@@ -110,6 +110,10 @@ aisle_place aisle_motion_project(const aisle_waypoint_msg *w, uint32_t n, aisle_
 uint32_t aisle_motion_cut(const aisle_vehicle *vehicle, const aisle_waypoint_msg *w, uint32_t n, const float *dwell,
                           aisle_place place, aisle_waypoint_msg *out, uint32_t capacity);
 
+// The dwell of a cut path: what belongs to each of its `left` waypoints (all that aisle_motion_cut() returned), into
+// out[left]. dwell may be NULL. O(left).
+void aisle_motion_cut_dwell(const float *dwell, uint32_t n, aisle_place place, uint32_t left, float *out);
+
 // Where it rests if it goes on for `delay` s (>= 0) and then brakes along the path, with d_max, in a turn with alpha_max.
 // v (m/s) is its real speed: where that is more than the path's it brakes with d_max down to the path's at once; where it
 // is less, the path's counts. Never beyond where the path rests next when it brakes. O(pieces between).

@@ -457,9 +457,10 @@ static void cut_at(aisle_place p) {
     left = aisle_motion_cut(&vehicle, path, count, dwell, p, rest, CAPACITY + AISLE_MOTION_CUT_EXTRA);
     TEST_ASSERT_GREATER_THAN_UINT32(0, left);
     TEST_ASSERT_TRUE(left <= count - p.piece + AISLE_MOTION_CUT_EXTRA);
-    memset(rest_dwell, 0, sizeof rest_dwell);
-    for (uint32_t k = p.piece; k < count && left >= count - k; k++) {
-        rest_dwell[left - (count - k)] = dwell[k];
+    aisle_motion_cut_dwell(dwell, count, p, left, rest_dwell);
+    for (uint32_t i = 0; i < left; i++) {
+        const bool is_new = i + count < left + p.piece;
+        TEST_ASSERT_EQUAL_FLOAT(is_new ? 0.0F : dwell[i + count - left], rest_dwell[i]);
     }
 }
 
