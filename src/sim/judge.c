@@ -20,6 +20,8 @@ void aisle_sim_judge_start(aisle_sim_judge *self, const aisle_sim_scene *scene, 
         self->body = aisle_sim_box(-0.5, -0.35, 0.5, 0.35);
     }
     self->reach = aisle_sim_outline_reach(&self->body);
+    self->v_max = vehicle->v_max > 0.0F ? (double)vehicle->v_max : 1.5;
+    self->v_back = vehicle->v_reverse_max > 0.0F ? (double)vehicle->v_reverse_max : 0.3;
     self->d_max = vehicle->d_max > 0.0F ? (double)vehicle->d_max : 0.5;
     self->stop_delay = LAG + (vehicle->reaction_time > 0.0F ? (double)vehicle->reaction_time : 0.3);
     self->separation = self->separation_moving = (double)INFINITY;
@@ -108,8 +110,9 @@ static double gap_since(const aisle_sim_judge *self, const aisle_sim_watch *w, a
 }
 
 static bool meets(const aisle_sim_judge *self, aisle_pose2 pose, double v, const aisle_sim_mover *m) {
-    double stop = self->stop_delay + fabs(v) / self->d_max;
-    double way = v * self->stop_delay + v * fabs(v) / (2.0 * self->d_max);
+    double full = v > 0.0 ? self->v_max : -self->v_back;
+    double stop = self->stop_delay + fabs(full) / self->d_max;
+    double way = full * self->stop_delay + full * fabs(full) / (2.0 * self->d_max);
     aisle_sim_outline swept = {
         .n = 2, .v = {{pose.x, pose.y}, {pose.x + way * cos(pose.theta), pose.y + way * sin(pose.theta)}}};
     return aisle_sim_gap_to(&swept, (aisle_vec2){m->pose.x, m->pose.y}) <= self->reach + m->reach + m->v_bound * stop;

@@ -6,9 +6,10 @@
 //
 // Moving: the fastest body point does more than AISLE_SIM_JUDGE_MOVING. A contact is one with one body from touch to
 // parting; it is a collision if the vehicle was moving at any time of it, else a contact at rest.
-// Encounter: while the vehicle drives (above 0.05 m/s), a mover's reach until the vehicle could stand (its body grown by
-// v_bound * T, T = reaction time + 0.1 s + v / d_max) meets the way the vehicle covers until then, taken as straight and
-// as wide as its body. The same mover counts again after AISLE_SIM_JUDGE_APART seconds without.
+// Encounter: while the vehicle drives (above 0.05 m/s), a mover's reach meets its way: the mover's body grown by
+// v_bound * T, T = reaction time + 0.1 s + v_max / d_max, meets the way that the vehicle would cover until rest if it
+// went on at v_max, taken as straight and as wide as its body. So it does not hang on how far the planner has slowed the
+// vehicle down already. The same mover counts again after AISLE_SIM_JUDGE_APART seconds without.
 // A goal is visited when the vehicle has rested within its tolerance (and the slack of localisation and stopping below)
 // for its dwell; in the list's order, or in any if it says so.
 // Memory: the struct. Time: O(movers + solids near) a tick.
@@ -44,8 +45,8 @@ typedef struct aisle_sim_watch { // of one mover
 typedef struct aisle_sim_judge {
     const aisle_sim_scene *scene;
     aisle_sim_outline body;
-    double reach;             // m, of the body
-    double stop_delay, d_max; // s, m/s2
+    double reach;                            // m, of the body
+    double stop_delay, v_max, v_back, d_max; // s, m/s2
     aisle_goal_list_msg goals;
     bool visited[AISLE_GOAL_LIST_MAX_GOALS];
     int16_t num_visited;

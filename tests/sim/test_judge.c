@@ -7,7 +7,7 @@
 static aisle_sim_scene scene;
 static aisle_sim_movers movers;
 static aisle_sim_judge judge;
-static aisle_vehicle_msg disc = {.footprint_radius = 0.5F, .d_max = 0.5F, .reaction_time = 0.3F};
+static aisle_vehicle_msg disc = {.footprint_radius = 0.5F, .v_max = 1.0F, .d_max = 0.5F, .reaction_time = 0.3F};
 static const double dt = 0.005;
 
 void setUp(void) {
@@ -127,17 +127,19 @@ static void test_the_hall_is_watched_too(void) {
 }
 
 static void test_an_encounter_is_a_reach_that_meets_the_way_to_rest(void) {
-    // v = 1: stops in 0.4 + 2 s over 0.4 + 1 m; the mover's reach by then is 0.25 + 2 * 2.4 m.
+    // From v_max = 1 it stops in 0.4 + 2 s over 0.4 + 1 m; the mover's reach by then is 0.25 + 2 * 2.4 m.
     double reach = 0.5 + 0.25 + 2.0 * 2.4;
     aisle_sim_mover *m =
         aisle_sim_movers_place(&movers, aisle_vec2_of(3.0 + 1.4, 7.0 + reach + 0.01), aisle_vec2_of(0.0, 0.0), 0.25);
-    aisle_sim_judge_look(&judge, 0.0, (aisle_pose2){3.0, 7.0, 0.0}, 1.0, 1.0, &movers);
+    aisle_sim_judge_look(&judge, 0.0, (aisle_pose2){3.0, 7.0, 0.0}, 0.2, 0.2, &movers);
     TEST_ASSERT_EQUAL_INT64(0, judge.encounters);
     m->pose.y -= 0.02;
-    aisle_sim_judge_look(&judge, 0.1, (aisle_pose2){3.0, 7.0, 0.0}, 1.0, 1.0, &movers);
+    aisle_sim_judge_look(&judge, 0.1, (aisle_pose2){3.0, 7.0, 0.0}, 0.2, 0.2, &movers); // however slow it is now
     aisle_sim_judge_look(&judge, 2.0, (aisle_pose2){3.0, 7.0, 0.0}, 1.0, 1.0, &movers);
     TEST_ASSERT_EQUAL_INT64(1, judge.encounters); // still the same one
     aisle_sim_judge_look(&judge, 5.1, (aisle_pose2){3.0, 7.0, 0.0}, 1.0, 1.0, &movers);
+    TEST_ASSERT_EQUAL_INT64(2, judge.encounters);
+    aisle_sim_judge_look(&judge, 9.0, (aisle_pose2){3.0, 7.0, 0.0}, -0.2, 0.2, &movers); // backwards it goes away
     TEST_ASSERT_EQUAL_INT64(2, judge.encounters);
 }
 
