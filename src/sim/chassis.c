@@ -5,8 +5,6 @@
 
 #include <string.h>
 
-#define AT_REST 1e-3 // m/s, rad/s: friction holds below it when nothing is asked for
-
 aisle_sim_chassis_traits aisle_sim_chassis_usual(const aisle_vehicle *vehicle) {
     return (aisle_sim_chassis_traits){.latency = 0.05,
                                       .lag = 0.08,
@@ -46,15 +44,13 @@ static void take_due(aisle_sim_chassis *self) {
     }
 }
 
-// One step towards the target: first order lag, the rate within [-down, up] where up is away from 0.
+// One step towards the target: first order lag, the rate within [-down, up] where up is away from 0; a target of 0 is
+// braked to with `down` until rest.
 static double towards(double value, double target, double lag, double up, double down, double dt) {
     bool gains = fabs(target) > fabs(value) && value * target >= 0.0;
-    double most = gains ? up : down;
-    double next = value + aisle_clamp((target - value) / lag, -most, most) * dt;
-    if (value * next < 0.0) { // through 0 only by standing
-        next = 0.0;
-    }
-    return target == 0.0 && fabs(next) < AT_REST ? 0.0 : next;
+    double most = gains ? up : down, wish = target == 0.0 ? dt : lag;
+    double next = value + aisle_clamp((target - value) / wish, -most, most) * dt;
+    return value * next < 0.0 ? 0.0 : next; // through 0 only by standing
 }
 
 void aisle_sim_chassis_step(aisle_sim_chassis *self, double dt) {

@@ -1,9 +1,10 @@
 // chassis.h - how the simulated vehicle really moves: commands late, drives that lag, wheels that slip. Level 5.
 //
 // A command acts `latency` seconds after it was given. Then, in steps of dt:
-//     v'         = (v_command - v) / lag, at most a_max when gaining speed, d_max when losing it
+//     v'         = (v_command - v) / lag, at most a_max when gaining speed, d_max when losing it; a command of 0 is
+//                  braking, with d_max until rest
 //     curvature' = (curvature_command - curvature) / lag
-//     spin'      = (spin_command - spin) / lag, at most alpha_max
+//     spin'      = (spin_command - spin) / lag, at most alpha_max; 0 brakes likewise
 // and the place follows from v (1 + slip) and theta' = |v| (curvature + steer error), or spin when turning on the spot;
 // slip and steer error wander (aisle_sim_drift). Curvature is the turn of the heading for each metre moved, whichever
 // way: positive turns left seen from above. Every heading is driven along or against (no sideways motion): what the
