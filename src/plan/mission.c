@@ -342,8 +342,8 @@ static arrival look(const aisle_vehicle *vehicle, const aisle_pose_msg *pose, co
     return (arrival){.off = away + LEVER * turned,
                      .is_within = is_within,
                      .rests = is_within && speed < RESTING && rate < RESTING,
-                     .stops = is_within && speed <= braking(vehicle->d_max, xy) &&
-                              (is_free || rate <= braking(vehicle->alpha_max, theta))};
+                     .stops = is_within && speed <= aisle_max(braking(vehicle->d_max, xy), RESTING) &&
+                              (is_free || rate <= aisle_max(braking(vehicle->alpha_max, theta), RESTING))};
 }
 
 // s from one time to a later one, any two of them.
@@ -359,35 +359,56 @@ static void reach(aisle_mission *self) {
     }
 }
 
+// Does it leave a goal on which it may have stayed for its dwell, if poses and brakes are given the benefit of the doubt?
+static bool leaves(const aisle_goal_rest *rest, const arrival *it, const aisle_goal_msg *goal, int64_t now_us) {
+    const bool has_stayed = rest->is_sure && (float)seconds(rest->from_us, now_us) >= goal->dwell;
+    const bool goes_off = goal->dwell <= 0.0F && it->off > rest->off;
+    return rest->stops && !it->rests && (has_stayed || goes_off);
+}
+
+// The row of poses goes on with this one; before_us: of the pose before.
+static void go_on_resting(aisle_goal_rest *rest, const arrival *it, int64_t before_us, int64_t now_us) {
+    if (!it->stops) {
+        *rest = (aisle_goal_rest){.is_on = false};
+        return;
+    }
+    rest->from_us = rest->stops ? rest->from_us : before_us;
+    rest->since_us = rest->is_on ? rest->since_us : now_us;
+    rest->stops = true;
+    rest->is_on = it->rests;
+    rest->is_sure = rest->is_sure || it->rests;
+    rest->off = it->off;
+}
+
 // Is the goal being driven to reached by this pose?
-static bool is_reached(aisle_mission *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose) {
+static bool is_reached(aisle_mission *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose,
+                       int64_t before_us) {
     const aisle_goal_msg *goal = &self->list[self->order[0]];
     const arrival it = look(vehicle, pose, goal);
     aisle_goal_rest *rest = &self->rest;
-    if (it.rests) {
-        rest->since_us = rest->is_on ? rest->since_us : pose->utime;
-        rest->is_on = true;
-        return (float)seconds(rest->since_us, pose->utime) >= goal->dwell;
-    }
-    const bool leaves = rest->stops && it.off > rest->off;
-    *rest = (aisle_goal_rest){.stops = it.stops, .off = it.off};
-    return leaves && goal->dwell <= 0.0F && self->left > 1U;
+    const bool has_left = self->left > 1U && leaves(rest, &it, goal, pose->utime);
+    go_on_resting(rest, &it, before_us, pose->utime);
+    return has_left || (rest->is_on && (float)seconds(rest->since_us, pose->utime) >= goal->dwell);
 }
 
 uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose) {
     uint32_t reached = 0;
     const double apart = aisle_max(vehicle->pose_timeout, AISLE_MISSION_APART);
-    if (pose == NULL || !self->has_pose || seconds(self->pose_us, pose->utime) > apart) {
+    const bool is_row = pose != NULL && self->has_pose && seconds(self->pose_us, pose->utime) <= apart;
+    int64_t before_us = is_row ? self->pose_us : 0;
+    if (!is_row) {
         break_rest(self);
     }
     self->has_pose = pose != NULL;
     if (pose == NULL) {
         return 0;
     }
+    before_us = is_row ? before_us : pose->utime;
     self->pose_us = pose->utime;
-    while (self->wanted && self->sent > 0U && is_reached(self, vehicle, pose)) {
+    while (self->wanted && self->sent > 0U && is_reached(self, vehicle, pose, before_us)) {
         reach(self);
         reached++;
+        before_us = pose->utime; // the next one's row begins now
     }
     return reached;
 }

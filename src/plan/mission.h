@@ -15,13 +15,16 @@
 // tolerance_xy (0: 0.05 m) and tolerance_theta (0: 0.05 rad; pi or more: any heading) and slower than 0.01 m/s and
 // 0.01 rad/s. Time is the poses' own: dwell is over at the first pose at least `dwell` after the first one of an unbroken
 // row of resting poses; two poses more than AISLE_MISSION_APART (or pose_timeout, if that is more) apart, or one that cannot
-// be trusted, break the row. A goal without dwell that others follow is left at once, so that perhaps no pose shows the
-// vehicle at rest, and one that lags behind its path never rests quite. It counts, too, when two poses in a row show the
-// vehicle within its tolerances no faster than one may be there that brakes to rest on it, sqrt(2 d_max tolerance_xy) (and
-// the same of its heading, if that is given), and then farther off. Only the goal being
-// driven to counts, and only once a plan has stood that drives there next. Of several goals within reach of one place each
-// has its dwell in turn. A goal that is reached stays reached, whatever becomes of path, layout or vehicle; goals passed
-// without a rest are not reached, and no plan of ours passes one without.
+// be trusted, break the row. Only the goal being driven to counts, and only once a plan has stood that drives there next.
+//     A goal that others follow is left when its dwell is over, to the millisecond; poses are further apart than that, and
+// whoever lags behind its path comes to rest late, but leaves in time, or never rests quite where there is no dwell. So
+// when a pose shows that it has left, the benefit of the doubt is the vehicle's. It stops over the goal while it is within
+// the tolerances and no faster than one may be there that brakes to rest on it: sqrt(2 d_max tolerance_xy), and
+// sqrt(2 alpha_max tolerance_theta) if a heading is given. The goal counts, too, when the vehicle has rested on it by one
+// pose and moves again by another, if from the pose before the first one that stops over it until now its dwell went by;
+// and one without dwell when two poses show it stopping over the goal and then farther off.
+//     Of several goals within reach of one place each has its dwell in turn. A goal that is reached stays reached, whatever
+// becomes of path, layout or vehicle.
 //     The goal being driven to (status_t.goal_id) is the first one left. An ordered list is driven as it came. One in any
 // order takes the order of its plan and keeps it when it is planned again, unless there is a reason to think again
 // (aisle_mission_reconsider(): the layout or the vehicle is another one): then all that is left is ordered anew. A newer
@@ -51,7 +54,9 @@ typedef enum aisle_goal_fate {
 typedef struct aisle_goal_rest { // on the goal being driven to, by an unbroken row of poses
     bool is_on;                  // the vehicle rests on it, and has
     int64_t since_us;            // since then
-    bool stops;                  // else: it may just be about to rest, or just have rested, on it
+    bool stops;                  // it stops over it, and may have rested on it
+    int64_t from_us;             // since then
+    bool is_sure;                // it did rest on it meanwhile
     double off;                  // m, how far it was from it
 } aisle_goal_rest;
 

@@ -425,6 +425,128 @@ static void test_the_last_goal_and_one_with_dwell_want_a_rest(void) {
     take_and_plan();
     TEST_ASSERT_EQUAL_UINT32(0, stand(3.0, 0.0));
     TEST_ASSERT_EQUAL_UINT32(0, stand(3.02, 0.0));
+    pose.vx = 0.0F;
+    for (int32_t id = 3; id <= 4; id++) {
+        setUp();
+        begin_list(4, 1, AISLE_GOAL_LIST_ORDERED);
+        add(3)->dwell = 1.0F; // before others it need not be seen to the end
+        if (id == 4) {
+            (void)add(4);
+        }
+        take_and_plan();
+        for (int i = 0; i < 10; i++) {
+            TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+        }
+        pose.vx = 0.02F;
+        TEST_ASSERT_EQUAL_UINT32(id == 4 ? 1 : 0, stand(3.001, 0.0));
+    }
+}
+
+static void test_whoever_leaves_before_the_dwell_can_be_over_has_not_reached_the_goal(void) {
+    for (int rests = 7; rests <= 9; rests++) {
+        fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+        list.goals[0].dwell = 1.0F;
+        setUp();
+        take_and_plan();
+        pose.vx = 0.3F;
+        TEST_ASSERT_EQUAL_UINT32(0, stand(2.96, 0.0)); // too fast to stop here: at rest after it, if at all
+        pose.vx = 0.0F;
+        for (int i = 0; i < rests; i++) {
+            TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+        }
+        pose.vx = 0.1F;
+        TEST_ASSERT_EQUAL_UINT32(rests == 9 ? 1 : 0, stand(3.06, 0.0)); // 0.1 s to either side
+        TEST_ASSERT_EQUAL_UINT32(0, stand(3.2, 0.0));
+        left_are(rests == 9 ? 1 : 2, rests == 9 ? (const int32_t[]){4, 0} : (const int32_t[]){3, 4});
+    }
+}
+
+static void test_a_dwell_wants_one_pose_at_rest(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].dwell = 1.0F;
+    take_and_plan();
+    pose.vx = 0.02F;
+    for (int i = 0; i < 20; i++) { // creeps over it
+        TEST_ASSERT_EQUAL_UINT32(0, stand(2.96 + 0.002 * i, 0.0));
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.04, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.1, 0.0));
+}
+
+static void test_a_shake_begins_the_dwell_again_but_is_no_leaving(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].dwell = 1.0F;
+    take_and_plan();
+    for (int i = 0; i < 5; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    pose.vx = 0.02F;
+    TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    pose.vx = 0.0F;
+    for (int i = 0; i < 10; i++) { // a noisy pose
+        TEST_ASSERT_EQUAL_UINT32(0, stand(3.0 + 1e-4 * i, 0.0));
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, stand_on(3));
+}
+
+static void test_who_leaves_slowly_has_stayed_all_the_same(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].dwell = 1.0F;
+    list.goals[0].tolerance_theta = 4.0F;
+    take_and_plan();
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    pose.omega = 0.5F; // where it turns first
+    TEST_ASSERT_EQUAL_UINT32(1, stand_on(3));
+}
+
+static void test_who_has_rested_and_shakes_has_rested(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].dwell = 1.0F;
+    take_and_plan();
+    for (int i = 0; i < 6; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    pose.vx = 0.02F;
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, stand_on(3));
+}
+
+static void test_what_was_before_a_break_is_no_part_of_a_stay(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    list.goals[0].dwell = 1.0F;
+    take_and_plan();
+    for (int i = 0; i < 5; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, aisle_mission_note_pose(&mission, &vehicle, NULL));
+    for (int i = 0; i < 9; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    pose.vx = 0.1F;
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.06, 0.0));
+    fill(2, AISLE_GOAL_LIST_ORDERED, IDS(3, 3, 4)); // nor what was spent on the goal before
+    list.goals[1].dwell = 0.5F;
+    take_and_plan();
+    pose.vx = 0.0F;
+    TEST_ASSERT_EQUAL_UINT32(1, stand_on(3));
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, stand_on(3));
+    }
+    pose.vx = 0.1F;
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.06, 0.0));
+}
+
+static void test_the_smallest_tolerance_can_be_met(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3));
+    list.goals[0].tolerance_xy = list.goals[0].tolerance_theta = 1e-6F;
+    take_and_plan();
+    pose.x = 3.0;
+    pose.vx = pose.omega = 0.009F;
+    arrives(true);
 }
 
 static void test_a_heading_given_is_part_of_stopping_over_a_goal(void) {
@@ -462,22 +584,24 @@ static void test_a_stop_over_a_goal_counts_though_the_list_is_extended_just_then
     TEST_ASSERT_EQUAL_UINT32(1, stand(3.01, 0.0));
 }
 
-// Along a line with a goal at every metre, braking to rest on each and leaving it at once, by a controller that lags behind.
+// Along a line with a goal at every metre, braking to rest on each and leaving it in time, by a controller that lags behind.
 static void test_a_vehicle_that_follows_its_path_reaches_every_goal_whatever_its_lag_and_rate_of_poses(void) {
     int hits = 0;
     for (int run = 0; run < 60; run++) {
-        const double lag = 0.04 * (run % 6), period = 0.02 + 0.02 * (run / 6 % 5), phase = 0.0071 * run;
+        const double lag = 0.04 * (run % 6), dwell = run < 30 ? 0.0 : 1.0, period = 0.02 + 0.02 * (run / 6 % 5),
+                     phase = 0.0071 * run;
         setUp();
         begin_list(4, 1, AISLE_GOAL_LIST_ORDERED);
         for (int32_t id = 1; id <= 9; id++) {
-            (void)add(id);
+            add(id)->dwell = (float)dwell;
         }
         take_and_plan();
         double x = 0.0, v = 0.0, next = phase;
         const double half = sqrt(1.0 / 0.5); // s, from rest to the middle of a metre
-        for (double t = 0.0; t < 9.0 * 2.0 * half + 2.0; t += 0.001) {
-            const double in = fmod(t, 2.0 * half);
-            const double wanted = t >= 9.0 * 2.0 * half ? 0.0 : 0.5 * (in < half ? in : 2.0 * half - in);
+        const double way = 2.0 * half + dwell;
+        for (double t = 0.0; t < 9.0 * way + 2.0; t += 0.001) {
+            const double in = fmod(t, way);
+            const double wanted = t >= 9.0 * way ? 0.0 : 0.5 * fmax(in < half ? in : 2.0 * half - in, 0.0);
             v += lag > 0.0 ? (wanted - v) * 0.001 / lag : wanted - v;
             x += v * 0.001;
             if (t >= next) {
@@ -1445,6 +1569,13 @@ int main(void) {
     RUN_TEST(test_coming_near_is_not_reaching_yet);
     RUN_TEST(test_only_poses_in_a_row_show_that_it_stopped);
     RUN_TEST(test_the_last_goal_and_one_with_dwell_want_a_rest);
+    RUN_TEST(test_whoever_leaves_before_the_dwell_can_be_over_has_not_reached_the_goal);
+    RUN_TEST(test_a_dwell_wants_one_pose_at_rest);
+    RUN_TEST(test_a_shake_begins_the_dwell_again_but_is_no_leaving);
+    RUN_TEST(test_who_leaves_slowly_has_stayed_all_the_same);
+    RUN_TEST(test_who_has_rested_and_shakes_has_rested);
+    RUN_TEST(test_what_was_before_a_break_is_no_part_of_a_stay);
+    RUN_TEST(test_the_smallest_tolerance_can_be_met);
     RUN_TEST(test_a_heading_given_is_part_of_stopping_over_a_goal);
     RUN_TEST(test_a_stop_over_a_goal_counts_though_the_list_is_extended_just_then);
     RUN_TEST(test_a_vehicle_that_follows_its_path_reaches_every_goal_whatever_its_lag_and_rate_of_poses);
