@@ -32,9 +32,31 @@ static void test_below_and_above_enclose_and_are_neighbours_or_the_number_itself
     TEST_ASSERT_TRUE(aisle_float_below(0.0) <= 0.0F && aisle_float_above(0.0) <= 0.0F);
 }
 
+typedef struct pair {
+    double a, b;
+} pair;
+
+static float kept[2];
+
+static pair rounded(double a, double b) {
+    kept[0] = (float)a;
+    kept[1] = (float)b;
+    return (pair){(double)kept[0], (double)kept[1]};
+}
+
+// Some compilers' vectors forget it, see cmake/AisleWarnings.cmake.
+static void test_the_compiler_rounds_two_neighbours_to_float(void) {
+    pair (*volatile call)(double, double) = rounded;
+    const pair p = call(0.1, 0.7);
+    const volatile float a = 0.1F, b = 0.7F;
+    TEST_ASSERT_TRUE(!(p.a < (double)a) && !(p.a > (double)a));
+    TEST_ASSERT_TRUE(!(p.b < (double)b) && !(p.b > (double)b));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_neighbours_are_the_next_floats);
+    RUN_TEST(test_the_compiler_rounds_two_neighbours_to_float);
     RUN_TEST(test_below_and_above_enclose_and_are_neighbours_or_the_number_itself);
     return UNITY_END();
 }

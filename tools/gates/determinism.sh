@@ -21,7 +21,7 @@ build_variant() { # name compiler flags...
     }
 }
 
-make_logs() { # a scanned map with its goals, and rooms of polygons with a disc and with a polygon footprint
+make_logs() { # a scanned map with its goals, rooms of polygons with a disc and with a polygon footprint, a car, zones
     rm -f "$work"/*.log
     {
         "$aisle" map --log "$work/depot.log" tests/data/ros_maps/nav2_depot.yaml
@@ -37,6 +37,7 @@ make_logs() { # a scanned map with its goals, and rooms of polygons with a disc 
                 --planner pso --seed 7
         done
     } >"$work/logs.txt"
+    build/venv/bin/python tools/gates/determinism_logs.py make "$work"
 }
 
 replay() { # variant run: checksums of the outputs of all logs on stdout
@@ -72,6 +73,9 @@ for variant in "${variants[@]}"; do
     done
 done
 cat "$work/sums.gcc-O0.1"
+for name in racks zones; do
+    build/venv/bin/python tools/gates/determinism_logs.py look "$work/$name.log" "$work/$name.gcc-O0.1" || failed=1
+done
 build/venv/bin/python tools/gates/stack.py build/det-gcc-O0/CMakeFiles/aisle_*.dir >"$work/stack.txt" || failed=1
 grep -E '^stack:' "$work/stack.txt"
 exit "$failed"
