@@ -89,6 +89,12 @@ static aisle_mover mover_of(const aisle_obstacle_msg *msg, const aisle_obstacles
 
 // ---- a message
 
+// to - from where that is not negative; differences of any two times fit.
+static uint64_t us_between(int64_t from, int64_t to) {
+    AISLE_ASSERT(from <= to);
+    return (uint64_t)to - (uint64_t)from;
+}
+
 static bool refuse(aisle_refusal *why, int16_t cause, int32_t id) {
     *why = (aisle_refusal){cause, id, 0.0F};
     return false;
@@ -108,7 +114,7 @@ static bool head_is_fit(const aisle_movers *self, const aisle_obstacles_msg *msg
     if (msg->map_id != 0 && map_id != 0 && msg->map_id != map_id) {
         return refuse(why, AISLE_STATUS_MAP_MISMATCH, msg->map_id);
     }
-    if (msg->utime > now_us && msg->utime - now_us > AISLE_MOVERS_AHEAD_US) {
+    if (msg->utime > now_us && us_between(now_us, msg->utime) > AISLE_MOVERS_AHEAD_US) {
         return refuse(why, AISLE_STATUS_CLOCK_JUMP, msg->source);
     }
     const aisle_movers_source *held = &self->source[msg->source];
@@ -118,9 +124,9 @@ static bool head_is_fit(const aisle_movers *self, const aisle_obstacles_msg *msg
     return true;
 }
 
-static bool shares_id(const aisle_obstacles_msg *msg, int16_t i) {
-    for (int16_t k = 0; k < i; k++) {
-        if (msg->obstacles[k].id == msg->obstacles[i].id) {
+static bool holds(const int32_t *ids, int16_t count, int32_t id) {
+    for (int16_t k = 0; k < count; k++) {
+        if (ids[k] == id) {
             return true;
         }
     }
@@ -128,13 +134,15 @@ static bool shares_id(const aisle_obstacles_msg *msg, int16_t i) {
 }
 
 static bool obstacles_are_fit(const aisle_obstacles_msg *msg, aisle_refusal *why) {
+    int32_t ids[AISLE_OBSTACLES_MAX_OBSTACLES];
     for (int16_t i = 0; i < msg->num_obstacles; i++) {
         if (!is_fit(&msg->obstacles[i])) {
             return refuse(why, AISLE_STATUS_MALFORMED, msg->obstacles[i].id);
         }
-        if (shares_id(msg, i)) {
+        if (holds(ids, i, msg->obstacles[i].id)) {
             return refuse(why, AISLE_STATUS_CONFLICT, msg->obstacles[i].id);
         }
+        ids[i] = msg->obstacles[i].id;
     }
     return true;
 }
@@ -181,7 +189,7 @@ aisle_status aisle_movers_take(aisle_movers *self, const aisle_obstacles_msg *ms
 // ---- questions
 
 static double seconds_since(const aisle_mover *self, int64_t at_us) {
-    return at_us > self->utime ? (double)(at_us - self->utime) * 1e-6 : 0.0;
+    return at_us > self->utime ? (double)us_between(self->utime, at_us) * 1e-6 : 0.0;
 }
 
 double aisle_mover_reach(const aisle_mover *self, int64_t at_us) {
@@ -199,7 +207,8 @@ aisle_vec2 aisle_mover_predicted(const aisle_mover *self, int64_t at_us, double 
 
 static int64_t fresh_until(const aisle_movers_source *source, double timeout_s) {
     const int64_t from = source->utime < source->taken_us ? source->utime : source->taken_us;
-    return from + (int64_t)(timeout_s * 1e6);
+    const int64_t timeout = (int64_t)(timeout_s * 1e6);
+    return from <= INT64_MAX - timeout ? from + timeout : INT64_MAX;
 }
 
 bool aisle_movers_stale(const aisle_movers *self, int64_t now_us, double timeout_s, int32_t *source) {
