@@ -95,19 +95,25 @@ static bool is_clear(const aisle_pace_predict *self, uint32_t *spent) {
     return true;
 }
 
-// The fastest level that is safe now.
+static bool is_safe(aisle_pace_predict *self, uint32_t level, uint32_t *spent) {
+    const aisle_band_motion motion = motion_of(self, aisle_pace_cap(self->request.vehicle, level));
+    aisle_band_make(&self->band, &motion);
+    *spent += self->band.n / 8U + self->request.movers->count / 8U;
+    return !self->band.overflow && is_clear(self, spent);
+}
+
+// The fastest level that is safe now; from rest none is if the slowest is not.
 static uint32_t choose(aisle_pace_predict *self, uint32_t *spent) {
-    const aisle_vehicle *vehicle = self->request.vehicle;
+    if (!(self->v > 0.0) && !is_safe(self, AISLE_PACE_STOP - 1U, spent)) {
+        return AISLE_PACE_STOP;
+    }
     for (uint32_t level = 0; level < AISLE_PACE_STOP;) {
-        const aisle_band_motion motion = motion_of(self, aisle_pace_cap(vehicle, level));
-        aisle_band_make(&self->band, &motion);
-        *spent += self->band.n / 8U + self->request.movers->count / 8U;
-        if (!self->band.overflow && is_clear(self, spent)) {
+        if (is_safe(self, level, spent)) {
             return level;
         }
         do {
             level++;
-        } while (level < AISLE_PACE_STOP && aisle_pace_cap(vehicle, level) >= self->band.peak);
+        } while (level < AISLE_PACE_STOP && aisle_pace_cap(self->request.vehicle, level) >= self->band.peak);
     }
     return AISLE_PACE_STOP;
 }

@@ -9,6 +9,8 @@
 #include "base/rng.h"
 #include "daemon/channel.h"
 #include "daemon/log.h"
+#include "plan/pace.h"
+#include "plan/pace_predict.h"
 #include "wire/codec.h"
 #include "world/collide.h"
 #include "world/layout.h"
@@ -284,6 +286,99 @@ static void one_sincos(uint32_t i) {
     turned += s + c;
 }
 
+// ---- speeds among movers
+
+enum { WAY = 60, HALLS = 16 };
+static aisle_vehicle vehicle;
+static aisle_waypoint_msg way[WAY + 1]; // a metre a piece, bent to and fro
+static aisle_mover walkers[HALLS][AISLE_OBSTACLES_MAX_OBSTACLES];
+static aisle_movers seen;
+static aisle_pace pace;
+static aisle_pace_predict predict;
+static aisle_path_msg paced;
+static uint32_t slowed;
+
+static void make_way(void) {
+    static const aisle_vehicle_msg usual;
+    aisle_refusal why;
+    aisle_profile_sum sum;
+    if (aisle_vehicle_from_msg(&usual, &vehicle, &why) != AISLE_OK) {
+        abort();
+    }
+    for (int i = 1; i <= WAY; i++) {
+        const double bend = i % 20 < 10 ? 0.1 : -0.1, dir = way[i - 1].theta + 0.5 * bend;
+        double sine, cosine;
+        aisle_sincos(dir, &sine, &cosine);
+        way[i] = (aisle_waypoint_msg){.x = way[i - 1].x + cosine,
+                                      .y = way[i - 1].y + sine,
+                                      .theta = way[i - 1].theta + bend,
+                                      .curvature = (float)bend,
+                                      .clearance = 2.0F};
+    }
+    if (aisle_profile_fill(&vehicle, NULL, way, WAY + 1, NULL, &sum) != AISLE_OK) {
+        abort();
+    }
+}
+
+// Persons anywhere within 40 m of the vehicle, one for every 20 m2 if there are 256.
+static void make_walkers(void) {
+    aisle_rng rng = aisle_rng_seed(1);
+    for (int hall = 0; hall < HALLS; hall++) {
+        for (int i = 0; i < AISLE_OBSTACLES_MAX_OBSTACLES; i++) {
+            walkers[hall][i] = (aisle_mover){.id = i,
+                                             .at = {way[10].x + 80.0 * (double)aisle_rng_float(&rng) - 40.0,
+                                                    way[10].y + 80.0 * (double)aisle_rng_float(&rng) - 40.0},
+                                             .velocity = {(double)aisle_rng_float(&rng) - 0.5, 0.3},
+                                             .radius = 0.3,
+                                             .sigma = 0.05,
+                                             .v_bound = 1.6};
+        }
+    }
+}
+
+static void one_pace(uint32_t i) {
+    const aisle_pace_request request = {.vehicle = &vehicle,
+                                        .movers = &seen,
+                                        .w = way,
+                                        .n = WAY + 1,
+                                        .at = {10, 0.5},
+                                        .v = (double)way[10].v,
+                                        .lease = 1.0};
+    uint32_t spent = 0;
+    seen.mover = walkers[i % HALLS];
+    aisle_pace_start(&pace, &request, &paced);
+    (void)aisle_pace_step(&pace, UINT32_MAX, &spent);
+    slowed += pace.level > 0 ? 1U : 0U;
+}
+
+static void one_prediction(uint32_t i) {
+    const aisle_pace_predict_request request = {.vehicle = &vehicle,
+                                                .movers = &seen,
+                                                .w = way,
+                                                .n = WAY + 1,
+                                                .at = {10, 0.5},
+                                                .v = (double)way[10].v,
+                                                .until = WAY,
+                                                .lease = 0.25};
+    uint32_t spent = 0;
+    seen.mover = walkers[i % HALLS];
+    aisle_pace_predict_start(&predict, &request);
+    (void)aisle_pace_predict_step(&predict, UINT32_MAX, &spent);
+}
+
+static void print_paces(void) {
+    make_way();
+    make_walkers();
+    for (uint32_t count = 1; count <= AISLE_OBSTACLES_MAX_OBSTACLES; count *= 4U) {
+        seen.count = count;
+        slowed = 0;
+        const double one = best_of(one_pace, 160);
+        (void)printf("speeds among %3u movers within 40 m         %7.1f us (slowed in %2u of %d halls)\n",
+                     (unsigned)count, 1e6 * one, (unsigned)(slowed / (ROUNDS * 10U)), HALLS);
+        (void)printf("how long 50 m will take among them         %7.2f ms\n", 1e3 * best_of(one_prediction, HALLS));
+    }
+}
+
 int main(int argc, char **argv) {
     void *block;
     if (posix_memalign(&block, AISLE_ARENA_ALIGN, BLOCK) != 0) {
@@ -301,6 +396,8 @@ int main(int argc, char **argv) {
         .cells = CELLS, .polygons = 4096, .vertices = 32768, .open_nodes = 131072, .requests = 1};
     aisle_layout_carve(&layout, &arena, &limits);
     aisle_astar_carve(&search, &arena, SIDE * SIDE, limits.open_nodes);
+    aisle_pace_carve(&pace, &arena);
+    aisle_pace_predict_carve(&predict, &arena);
     make_shelves();
     print_loads(argc - 1, argv + 1);
     send_shelves();
@@ -315,6 +412,7 @@ int main(int argc, char **argv) {
     }
     (void)printf("decoding a layout_t of %6zu bytes         %7.1f us\n", encoded, 1e6 * best_of(one_decode, 1000));
     (void)printf("sine and cosine                            %7.1f ns\n", 1e9 * best_of(one_sincos, 1000000));
+    print_paces();
     free(block);
     free(occupied);
     free(bare);
