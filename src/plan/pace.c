@@ -11,7 +11,7 @@
 #define SNAP 2e-6       // m, waypoints are at least apart
 #define SPACING 0.02    // m, of the band's places at least
 #define PLACES 256.0    // of a band, about
-#define AHEAD 0.5       // m, of the front beyond what can matter
+#define AHEAD 0.1       // m, of the front beyond what can matter
 
 void aisle_pace_carve(aisle_pace *self, aisle_arena *arena) {
     self->front = (aisle_waypoint_msg *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_waypoint_msg));
@@ -171,7 +171,7 @@ static aisle_status fill(aisle_pace *self, knots *path, double cap, double lengt
 // m that can be driven within the lease and the braking after it, at most.
 static double reach_of(const aisle_pace *self, double cap) {
     const aisle_vehicle *vehicle = self->request.vehicle;
-    const double v = aisle_max(self->request.v, aisle_min(cap, vehicle->v_max));
+    const double v = aisle_max(self->request.v, aisle_min(cap, aisle_max(vehicle->v_max, vehicle->v_reverse_max)));
     return v * (AISLE_PACE_HOLD * self->request.lease + vehicle->reaction_time) + 0.5 * v * v / vehicle->d_max;
 }
 
@@ -267,14 +267,19 @@ static aisle_status stop(aisle_pace *self) {
 
 // ---- levels
 
-// The part of the path that the level's band and all that bounds its speeds lie on.
+// The part of the path that the level's band and all that bounds its speeds lie on: up to the first waypoint beyond the
+// reach they are as on the whole path, for from there it could brake to the front's end.
 static knots take_front(aisle_pace *self, double cap) {
     const aisle_vehicle *vehicle = self->request.vehicle;
-    const double length = reach_of(self, cap) + 0.5 * vehicle->v_max * vehicle->v_max / vehicle->d_max + AHEAD;
+    const double fastest = aisle_max(aisle_max(vehicle->v_max, vehicle->v_reverse_max), self->request.v);
+    const double reach = reach_of(self, cap), brakes = 0.5 * fastest * fastest / vehicle->d_max;
     const aisle_waypoint_msg *w = self->path->waypoints;
+    double s = 0.0, beyond = 0.0; // m; beyond: behind the first waypoint past the reach
     uint32_t n = 1;
-    for (double s = 0.0; n < self->n && s < length; n++) {
-        s += aisle_piece_length(&w[n - 1U], &w[n]);
+    for (; n < self->n && !(s >= reach && beyond >= brakes + AHEAD); n++) {
+        const double length = aisle_piece_length(&w[n - 1U], &w[n]);
+        beyond += s >= reach ? length : 0.0;
+        s += length;
     }
     memcpy(self->front, w, n * sizeof w[0]);
     memcpy(self->front_dwell, self->dwell, n * sizeof self->dwell[0]);

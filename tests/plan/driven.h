@@ -92,15 +92,16 @@ static inline real worst_slack(real px, real py, real reach, real bound, real la
 // ---- ways
 
 static aisle_profile_sum way_sum;
+static double way_piece_max = 3.0; // m
 
 static inline void fill_way(void) {
     TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill(&vehicle, NULL, path, count, dwell, &way_sum));
 }
 
-// Lines and arcs of up to 3 m, stops with and without dwell, turns, changes of direction if asked for.
+// Lines and arcs of up to way_piece_max, stops with and without dwell, turns, changes of direction if asked for.
 static inline void random_way(uint64_t seed, uint32_t pieces, bool reverses) {
     aisle_rng rng = aisle_rng_seed(seed ^ 0xd01eU);
-    const style how = {.piece_max = seed % 3 == 0 ? 0.6 : 3.0, .radius_min = 0.5};
+    const style how = {.piece_max = seed % 3 == 0 ? 0.6 : way_piece_max, .radius_min = 0.5};
     bool back = false;
     count = 0;
     memset(dwell, 0, sizeof dwell);

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "driven.h"
 #include "plan/verify.h"
+#include "plan/verify_moving.h"
 #include "unity.h"
 
 enum { BLOCK = 16 << 20, MOVERS = 6 };
@@ -108,6 +109,7 @@ static aisle_pace_request random_request(uint64_t seed, uint32_t how_many) {
     aisle_rng rng = aisle_rng_seed(seed);
     setUp();
     some_vehicle(seed);
+    way_piece_max = seed % 4 == 1 ? 8.0 : 3.0;
     random_way(seed, 14, true);
     const aisle_place at = random_place(&rng);
     double v = aisle_motion_speed(&vehicle, path, count, dwell, at);
@@ -227,6 +229,60 @@ static void test_its_paths_are_proved_at_every_level(void) {
             TEST_ASSERT_EQUAL_INT(0, out.num_base);
         }
     }
+}
+
+// The moving proof, by an author of its own, of a path that was taken.
+static aisle_status prove_moving(const aisle_path_msg *made, double v, double lease) {
+    static aisle_path_msg copy;
+    static uint8_t bytes[65536];
+    static aisle_verify_moving moving;
+    size_t size = 0;
+    uint32_t spent = 0;
+    aisle_moving_stamp stamp;
+    memcpy(&copy, made, sizeof copy);
+    copy.status = AISLE_PATH_PARTIAL;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_path_encode(&copy, bytes, sizeof bytes, &size));
+    const aisle_moving_request request = {.vehicle = &vehicle,
+                                          .movers = &movers,
+                                          .bytes = bytes,
+                                          .size = size,
+                                          .path = &copy,
+                                          .at_piece = made->num_waypoints > 1 ? 1U : 0U,
+                                          .v = v,
+                                          .now_us = NOW,
+                                          .lease = lease};
+    aisle_verify_moving_start(&moving, &request);
+    aisle_status st;
+    do {
+        st = aisle_verify_moving_step(&moving, 10000, &spent, &stamp);
+    } while (st == AISLE_BUSY);
+    TEST_ASSERT_FALSE(moving.is_unfit);
+    return st;
+}
+
+static void test_what_it_takes_is_proved_for_1500_of_1500_cases(void) {
+    uint32_t taken = 0, agreed = 0, slower = 0;
+    for (uint64_t seed = 10000; seed < 11500; seed++) {
+        aisle_pace_request request = random_request(seed, 1 + (uint32_t)(seed % 3));
+        memset(dwell, 0, sizeof dwell);
+        fill_way();
+        if (run(&request, &out) == AISLE_OK) {
+            taken++;
+            TEST_ASSERT_EQUAL_INT(AISLE_OK, prove_moving(&out, request.v, request.lease));
+        }
+        if (pace.level > 0) { // is the level before it refused by the proof, too?
+            const uint32_t level = pace.level;
+            const aisle_movers none = {.mover = mover};
+            request.movers = &none;
+            request.first = level - 1U;
+            TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request, &other));
+            slower++;
+            agreed += prove_moving(&other, request.v, request.lease) == AISLE_ERR_DATA ? 1U : 0U;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(500, taken);
+    TEST_ASSERT_GREATER_THAN_UINT32(500, slower);
+    TEST_ASSERT_GREATER_THAN_UINT32(slower * 9U / 10U, agreed);
 }
 
 // What is under way on `out`, whose waypoints are first copied away.
@@ -475,6 +531,7 @@ int main(void) {
     RUN_TEST(test_what_it_takes_is_safe_for_2000_of_2000_cases);
     RUN_TEST(test_it_takes_the_fastest_level_that_brute_force_allows);
     RUN_TEST(test_its_paths_are_proved_at_every_level);
+    RUN_TEST(test_what_it_takes_is_proved_for_1500_of_1500_cases);
     RUN_TEST(test_paths_under_way_are_taken_over_on_their_base_however_the_level_changes);
     RUN_TEST(test_from_a_stop_it_gets_up_to_speed_though_each_path_keeps_the_base_of_the_one_before);
     RUN_TEST(test_caps_fall_from_level_to_level);
