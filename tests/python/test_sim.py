@@ -3,6 +3,7 @@
 import argparse
 import json
 import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -117,3 +118,52 @@ def test_wrong_options_end_with_2_and_one_line(tmp_path, scenario, capsys, words
     base = ["sim", "--scenario", str(scenario), "--out", str(tmp_path / "o"), "--programs", str(SIM.parent)]
     assert cli.main([*base, *words]) == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
+
+
+def run_program(*words):
+    return subprocess.run([str(SIM), *words], capture_output=True, text=True, timeout=100)
+
+
+@needs_program
+def test_a_batch_names_the_seeds_that_show_its_collisions_again(tmp_path):
+    done = run_program("--batch", "60", "--kind", "person", "--blind", "--json", str(tmp_path / "b.json"))
+    assert done.returncode == 1
+    sums = json.loads((tmp_path / "b.json").read_text())
+    lines = [line for line in done.stdout.splitlines() if line.startswith("COLLISION")]
+    assert sums["encounters"] >= 60 and sums["drives_with_collision"] == len(lines) > 0
+    seed, when = lines[0].split("seed ")[1].split(",")[0], lines[0].split("; ")[1].split(" s ")[0]
+    again = run_program("--drawn", seed, "--kind", "person", "--blind")
+    assert again.returncode == 1 and f"{when} s: collision with" in again.stdout
+
+
+@needs_program
+def test_a_drawn_drive_of_a_slow_planner_leaves_a_record(tmp_path):
+    log = tmp_path / "record.log"
+    done = run_program("--drawn", "7", "--kind", "agv", "--units-per-ms", "500", "--out", str(log))
+    assert done.returncode in (0, 1) and done.stderr == ""
+    replay = SIM.parent / "aisle-replay"
+    if replay.is_file():
+        told = subprocess.run([str(replay), str(log), "--check"], capture_output=True, text=True, timeout=100)
+        assert told.returncode == 0, told.stdout
+
+
+@needs_program
+@pytest.mark.parametrize(
+    "words",
+    [
+        [],
+        ["x.log", "--drawn", "1"],
+        ["--batch", "many"],
+        ["--drawn", "1.5"],
+        ["--drawn", "1", "--kind", "ghost"],
+        ["--drawn", "1", "--count", "400"],
+        ["--batch", "1", "--drives", "-1"],
+        ["--batch", "1", "--units-per-ms", "x"],
+        ["x.log", "--faults", "flood:1:1"],
+        ["x.log", "--nonsense"],
+    ],
+)
+def test_wrong_words_end_the_program_with_2_and_one_line(words):
+    done = run_program(*words)
+    assert done.returncode == 2 and done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1

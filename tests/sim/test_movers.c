@@ -134,6 +134,27 @@ static void test_adversaries_touch_a_vehicle_that_does_not_mind(void) {
     TEST_ASSERT_TRUE(touched >= 18);
 }
 
+static void test_each_tactic_leads_to_a_vehicle_that_passes(void) {
+    for (int tactic = 0; tactic < (int)AISLE_SIM_TACTIC_COUNT; tactic++) {
+        fill(AISLE_SIM_ADVERSARIAL, 1, 1);
+        aisle_sim_mover *m = &movers.mover[0];
+        m->tactic = (aisle_sim_tactic)tactic;
+        m->pose = (aisle_pose2){9.0, 3.5, 0.0};
+        m->trigger = 2.0;
+        m->v_bound = 2.0;
+        m->until = 1e9;
+        double least = 1e9, waited = 0.0;
+        for (int step = 0; step < 2000; step++) {
+            aisle_sim_prey prey = prey_at(step);
+            aisle_sim_movers_step(&movers, dt, &prey);
+            least = fmin(least, hypot(m->pose.x - prey.at.x, m->pose.y - prey.at.y) - m->reach - prey.reach);
+            waited += aisle_vec2_length(m->velocity) == 0.0 && !m->is_set_off ? dt : 0.0;
+        }
+        TEST_ASSERT_TRUE(least < 0.0);
+        TEST_ASSERT_TRUE((tactic == (int)AISLE_SIM_AMBUSH) == (waited > 2.0)); // only one lies in wait
+    }
+}
+
 static void test_a_seed_gives_the_same_walks(void) {
     static aisle_sim_movers first;
     for (int run = 0; run < 2; run++) {
@@ -176,6 +197,7 @@ int main(void) {
     RUN_TEST(test_they_move);
     RUN_TEST(test_random_jumps_stay_within_a_metre_each_way);
     RUN_TEST(test_adversaries_touch_a_vehicle_that_does_not_mind);
+    RUN_TEST(test_each_tactic_leads_to_a_vehicle_that_passes);
     RUN_TEST(test_a_seed_gives_the_same_walks);
     RUN_TEST(test_too_many_or_no_place_is_refused_and_nothing_is_added);
     RUN_TEST(test_names_lead_to_kinds_and_back);
