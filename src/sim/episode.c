@@ -74,11 +74,16 @@ static bool take_message(aisle_sim_episode *self, aisle_channel channel, const v
     }
 }
 
-bool aisle_sim_episode_prepare(aisle_sim_episode *self, aisle_channel channel, const uint8_t *bytes, size_t size) {
+static bool take_bytes(aisle_sim_episode *self, aisle_channel channel, const uint8_t *bytes, size_t size) {
     aisle_feed *feed = malloc(sizeof *feed);
     bool good = feed != NULL && aisle_feed_load(feed, channel, bytes, size) == AISLE_OK &&
                 take_message(self, channel, &feed->message);
     free(feed);
+    return good;
+}
+
+bool aisle_sim_episode_prepare(aisle_sim_episode *self, aisle_channel channel, const uint8_t *bytes, size_t size) {
+    bool good = take_bytes(self, channel, bytes, size);
     bool is_sent = channel == AISLE_CHANNEL_LAYOUT || channel == AISLE_CHANNEL_GRID ||
                    channel == AISLE_CHANNEL_LAYOUT_PATCH || channel == AISLE_CHANNEL_VEHICLE;
     if (good && is_sent) {
@@ -144,6 +149,7 @@ static void send_goals(aisle_sim_episode *self, int64_t since_us) {
     if (since_us == 0) {
         self->goals.utime = self->now_us;
         self->goals_at = aisle_sim_episode_seconds(self);
+        self->goals_us = self->now_us;
     }
     send_now(self, AISLE_CHANNEL_GOALS, &self->goals);
 }
@@ -194,6 +200,32 @@ void aisle_sim_episode_hear(void *episode, aisle_channel channel, int64_t utime,
         hear_path(self, utime, bytes, size);
     } else if (self->heard.query_id == AISLE_SIM_QUERY_ID && self->heard.status == AISLE_PATH_OK) {
         self->optimum = (double)self->heard.duration;
+    }
+}
+
+// ---- messages for later
+
+bool aisle_sim_episode_script(aisle_sim_episode *self, double at, aisle_channel channel, const uint8_t *bytes,
+                              size_t size) {
+    bool may = channel == AISLE_CHANNEL_GOALS || channel == AISLE_CHANNEL_COMMAND || channel == AISLE_CHANNEL_LAYOUT ||
+               channel == AISLE_CHANNEL_GRID || channel == AISLE_CHANNEL_LAYOUT_PATCH;
+    return may && at >= 0.0 && at < 1e6 &&
+           aisle_msg_check(aisle_channel_type(channel), bytes, size, NULL) == AISLE_OK &&
+           aisle_sim_post_send(&self->script, (int64_t)(at * 1e6), channel, bytes, size);
+}
+
+// What is due changes the world and goes to the planner.
+static void play_script(aisle_sim_episode *self) {
+    aisle_sim_letter letter;
+    int64_t since = self->now_us - self->goals_us;
+    while (self->goals_us > 0 && aisle_sim_post_take(&self->script, since, &letter)) {
+        self->failed = !take_bytes(self, letter.channel, letter.bytes, letter.size) || self->failed;
+        if (letter.channel == AISLE_CHANNEL_GOALS) {
+            aisle_sim_driver_take_goals(&self->driver, &self->goals);
+            aisle_sim_judge_take_goals(&self->judge, &self->goals);
+        }
+        aisle_sim_host_send(self->host, self->now_us, letter.channel, letter.bytes, letter.size);
+        free(letter.bytes);
     }
 }
 
@@ -348,6 +380,7 @@ static void tick(aisle_sim_episode *self) {
                          &self->movers);
     count_stops(self, speed);
     go_wrong(self, speed);
+    play_script(self);
     measure(self);
     deliver(self);
     control(self);
@@ -411,14 +444,15 @@ static void begin(aisle_sim_episode *self) {
 
 static bool is_over(aisle_sim_episode *self) {
     double now = aisle_sim_episode_seconds(self), limit = self->setup.time_limit;
-    if (self->judge.arrival >= 0.0) {
+    if (self->judge.arrival >= 0.0 && self->script.count == 0) {
         self->arrived = self->status.state == AISLE_STATUS_IDLE;
         return self->arrived || now > self->judge.arrival + SETTLE_S;
     }
     if (self->status.state != AISLE_STATUS_IDLE || self->goals_at <= 0.0) {
         self->busy_at = now;
     }
-    bool given_up = now > self->busy_at + SETTLE_S; // the planner takes the goals for reached, the judge does not
+    bool given_up = now > self->busy_at + SETTLE_S &&
+                    self->script.count == 0; // the planner takes the goals for reached, the judge does not
     return given_up || now > (limit > 0.0 ? limit : LIMIT_FACTOR * self->optimum + LIMIT_EXTRA);
 }
 
@@ -448,5 +482,6 @@ bool aisle_sim_episode_run(aisle_sim_episode *self, char *message) {
 void aisle_sim_episode_end(aisle_sim_episode *self) {
     aisle_sim_post_free(&self->to_planner);
     aisle_sim_post_free(&self->to_vehicle);
+    aisle_sim_post_free(&self->script);
     aisle_sim_scene_free(&self->scene);
 }

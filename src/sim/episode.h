@@ -68,17 +68,18 @@ typedef struct aisle_sim_episode {
     aisle_sim_source source[AISLE_OBSTACLES_MAX_SOURCES];
     aisle_sim_judge judge;
     aisle_sim_post to_planner, to_vehicle;
-    aisle_rng rng; // of delays
+    aisle_sim_post script; // due in us from the goals on
+    aisle_rng rng;         // of delays
     aisle_vehicle_msg vehicle_msg;
     aisle_vehicle vehicle;
     bool has_vehicle, has_start, has_goals;
     aisle_pose2 start;
     aisle_goal_list_msg goals;
-    int64_t now_us, tick;
-    double goals_at;         // s, when the goals were sent
-    aisle_status_msg status; // the last heartbeat
-    aisle_path_msg heard;    // scratch
-    double optimum;          // s, the way without movers; 0: not known
+    int64_t now_us, goals_us, tick; // goals_us: when they were sent; 0: not yet
+    double goals_at;                // s, when the goals were sent
+    aisle_status_msg status;        // the last heartbeat
+    aisle_path_msg heard;           // scratch
+    double optimum;                 // s, the way without movers; 0: not known
     int64_t revisions, renewals, last_revision;
     int8_t last_status;
     aisle_sim_cause cause[AISLE_SIM_CAUSES_MAX]; // new paths by status and cause
@@ -98,6 +99,11 @@ void aisle_sim_episode_hear(void *episode, aisle_channel channel, int64_t utime,
 // One message of the set-up: layouts, tiles, patches and vehicles are sent on; of a pose the place is where the drive
 // begins; goals are sent when it does; anything else is left out. False: not a message, or no memory.
 bool aisle_sim_episode_prepare(aisle_sim_episode *self, aisle_channel channel, const uint8_t *bytes, size_t size);
+
+// One message for later, `at` seconds after the goals: another goal list, a command, a patch or layout, which change the
+// order, the vehicle's knowledge of it and the hall, too. False: not such a message, or no memory.
+bool aisle_sim_episode_script(aisle_sim_episode *self, double at, aisle_channel channel, const uint8_t *bytes,
+                              size_t size);
 
 // Does the planner say that it holds the layout and the vehicle? (Buses lose messages; send again what is not held.)
 bool aisle_sim_episode_is_held(const aisle_sim_episode *self);

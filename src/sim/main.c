@@ -34,6 +34,9 @@ static const char help[] =
     "  --faults LIST   KIND:AT:LASTS[:AMOUNT],...; kinds: pose_silent, unlocalized, pose_jump, obstacles_silent, "
     "paths_lost,\n"
     "                  push, hold. With --drawn and --batch: any word, and they are drawn\n"
+    "  --script LOG    goal lists, commands, layouts and patches for later: an event's time after the log's first one "
+    "is\n"
+    "                  its time after the goals\n"
     "  --units-per-ms N  planning takes time: so many work units a millisecond; 4000 are about a desktop core\n"
     "  --bus URL       aisled on this LCM bus plans, in real time; \"\" is LCM's default\n"
     "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
@@ -44,7 +47,7 @@ static const char help[] =
     "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
 
 typedef struct arguments {
-    const char *units, *faults, *bus, *drawn, *batch, *kind, *count, *drives;
+    const char *script, *units, *faults, *bus, *drawn, *batch, *kind, *count, *drives;
     bool told, blind;
     const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
     bool version, help;
@@ -76,14 +79,19 @@ static int complain(int code, const char *what, const char *name) {
 
 static bool parse(arguments *out, int argc, char **argv, char *message) {
     const aisle_option options[] = {
-        {"--movers", NULL, &out->movers},      {"--tracks", NULL, &out->tracks},   {"--place", NULL, &out->place},
-        {"--seed", NULL, &out->seed},          {"--time", NULL, &out->time},       {"--room", NULL, &out->room},
-        {"--sources", NULL, &out->sources},    {"--out", NULL, &out->out},         {"--json", NULL, &out->json},
-        {"--truth", NULL, &out->truth},        {"--prefix", NULL, &out->prefix},   {"--config", NULL, &out->config},
-        {"--drawn", NULL, &out->drawn},        {"--batch", NULL, &out->batch},     {"--kind", NULL, &out->kind},
-        {"--count", NULL, &out->count},        {"--drives", NULL, &out->drives},   {"--bus", NULL, &out->bus},
-        {"--units-per-ms", NULL, &out->units}, {"--faults", NULL, &out->faults},   {"--told", &out->told, NULL},
-        {"--blind", &out->blind, NULL},        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
+        {"--movers", NULL, &out->movers},   {"--tracks", NULL, &out->tracks},
+        {"--place", NULL, &out->place},     {"--seed", NULL, &out->seed},
+        {"--time", NULL, &out->time},       {"--room", NULL, &out->room},
+        {"--sources", NULL, &out->sources}, {"--out", NULL, &out->out},
+        {"--json", NULL, &out->json},       {"--truth", NULL, &out->truth},
+        {"--prefix", NULL, &out->prefix},   {"--config", NULL, &out->config},
+        {"--drawn", NULL, &out->drawn},     {"--batch", NULL, &out->batch},
+        {"--kind", NULL, &out->kind},       {"--count", NULL, &out->count},
+        {"--drives", NULL, &out->drives},   {"--bus", NULL, &out->bus},
+        {"--script", NULL, &out->script},   {"--units-per-ms", NULL, &out->units},
+        {"--faults", NULL, &out->faults},   {"--told", &out->told, NULL},
+        {"--blind", &out->blind, NULL},     {"--version", &out->version, NULL},
+        {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -242,6 +250,26 @@ static bool prepare(void) {
     return true;
 }
 
+// Hands over the messages for later.
+static bool read_script(const char *name) {
+    FILE *file = NULL;
+    aisle_log_event event;
+    int64_t first = 0;
+    if (name == NULL || !open_file(name, "rb", &file)) {
+        return name == NULL;
+    }
+    bool good = aisle_log_open(&tool.log, file);
+    while (good && aisle_log_next(&tool.log, &event)) {
+        first = tool.log.events == 1 ? event.utime : first;
+        aisle_channel channel = aisle_channel_find(tool.settings.prefix, event.channel, event.channel_length);
+        good = (int)channel >= AISLE_CHANNEL_INPUTS ||
+               aisle_sim_episode_script(&tool.episode, (double)(event.utime - first) * 1e-6, channel, event.bytes,
+                                        event.size);
+    }
+    (void)close_file(file);
+    return good || complain(EXIT_TROUBLE, "a message of the script cannot be used", name) == EXIT_GOOD;
+}
+
 // On a bus again and again until the daemon holds it.
 static bool prepare_held(void) {
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
@@ -284,7 +312,7 @@ static int run(void) {
         return complain(status == AISLE_ERR_ARG ? EXIT_USAGE : EXIT_TROUBLE, message, NULL);
     }
     aisle_sim_episode_start(&tool.episode, &tool.setup, &tool.host);
-    if (!prepare_held()) {
+    if (!prepare_held() || !read_script(tool.given.script)) {
         return EXIT_TROUBLE;
     }
     if (!aisle_sim_episode_run(&tool.episode, message)) {

@@ -181,6 +181,75 @@ static void test_a_push_is_steered_away(void) {
     TEST_ASSERT_TRUE(episode.judge.static_gap > 0.0);
 }
 
+// ---- messages for later
+
+static void later(double at, aisle_channel channel, const void *msg, bool good) {
+    static uint8_t bytes[AISLE_MSG_DATAGRAM_MAX];
+    size_t size = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_encode(aisle_channel_type(channel), msg, bytes, sizeof bytes, &size));
+    TEST_ASSERT_EQUAL(good, aisle_sim_episode_script(&episode, at, channel, bytes, size));
+}
+
+static void begin_script(void) {
+    aisle_sim_setup setup = aisle_sim_setup_usual(2);
+    start(&setup, NULL);
+    prepare(AISLE_CHANNEL_LAYOUT, &hall_layout);
+    prepare(AISLE_CHANNEL_VEHICLE, &vehicle);
+    prepare(AISLE_CHANNEL_POSE, &pose);
+    prepare(AISLE_CHANNEL_GOALS, &goals);
+}
+
+static void end_script(void) {
+    TEST_ASSERT_TRUE_MESSAGE(aisle_sim_episode_run(&episode, message), message);
+    aisle_sim_host_stop(&host);
+    aisle_sim_episode_end(&episode);
+}
+
+static void test_a_list_that_replaces_another_is_driven(void) {
+    begin_script();
+    aisle_goal_list_msg other = goals;
+    other.goal_list_id = 2;
+    other.goals[0].x = 2.0;
+    other.goals[0].y = 8.0;
+    later(0.1, AISLE_CHANNEL_GOALS, &other, true);
+    end_script();
+    TEST_ASSERT_TRUE(episode.arrived);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 8.0, episode.judge.pose.y);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 2.0, episode.judge.pose.x);
+    TEST_ASSERT_EQUAL_INT32(2, episode.driver.path.goal_list_id);
+}
+
+static void test_a_patch_changes_planner_and_hall(void) {
+    static aisle_layout_patch_msg patch;
+    begin_script();
+    patch = (aisle_layout_patch_msg){.map_id = 1, .base_revision = 1, .map_revision = 2, .num_polygons = 1};
+    patch.polygons[0] = hall_layout.polygons[0];
+    patch.polygons[0].id = 7;
+    for (int i = 0; i < 4; i++) {
+        patch.polygons[0].vertices[i][0] += 4.5; // in front of the goal's right, from 9.5 on
+    }
+    later(3.0, AISLE_CHANNEL_LAYOUT_PATCH, &patch, true);
+    TEST_ASSERT_EQUAL_UINT32(1, episode.scene.count);
+    TEST_ASSERT_TRUE_MESSAGE(aisle_sim_episode_run(&episode, message), message);
+    TEST_ASSERT_EQUAL_UINT32(2, episode.scene.count);
+    TEST_ASSERT_EQUAL_INT32(2, episode.status.map_revision);
+    TEST_ASSERT_EQUAL_INT64(0, episode.judge.static_collisions);
+    aisle_sim_host_stop(&host);
+    aisle_sim_episode_end(&episode);
+}
+
+static void test_only_what_the_world_can_follow_is_scripted(void) {
+    begin_script();
+    later(5.0, AISLE_CHANNEL_VEHICLE, &vehicle, false);
+    later(5.0, AISLE_CHANNEL_POSE, &pose, false);
+    later(-1.0, AISLE_CHANNEL_GOALS, &goals, false);
+    uint8_t nonsense[4] = {1, 2, 3, 4};
+    TEST_ASSERT_FALSE(aisle_sim_episode_script(&episode, 1.0, AISLE_CHANNEL_GOALS, nonsense, sizeof nonsense));
+    TEST_ASSERT_EQUAL_UINT32(0, episode.script.count);
+    aisle_sim_host_stop(&host);
+    aisle_sim_episode_end(&episode);
+}
+
 static void test_what_a_setup_lacks_is_named(void) {
     aisle_sim_setup setup = aisle_sim_setup_usual(1);
     start(&setup, NULL);
@@ -232,6 +301,9 @@ int main(void) {
     RUN_TEST(test_hold_stops_and_resume_goes_on);
     RUN_TEST(test_a_silent_localiser_ends_the_lease);
     RUN_TEST(test_a_push_is_steered_away);
+    RUN_TEST(test_a_list_that_replaces_another_is_driven);
+    RUN_TEST(test_a_patch_changes_planner_and_hall);
+    RUN_TEST(test_only_what_the_world_can_follow_is_scripted);
     RUN_TEST(test_what_a_setup_lacks_is_named);
     RUN_TEST(test_reports_name_the_figures);
     return UNITY_END();
