@@ -151,7 +151,7 @@ static aisle_status begin_run(aisle_verify_moving *self, const aisle_moving_phas
     aisle_moving_motion *motion = &self->motion;
     motion->leaves_rest = false;
     self->piece = motion->piece;
-    self->origin = 0.0;
+    self->origin = motion->run - motion->done;
     self->swept = phase->from;
     self->behind = motion->way - (motion->turns ? 0.0 : phase->to);
     if (!aisle_moving_piece(self, self->piece, &self->curve)) {
@@ -215,7 +215,7 @@ static aisle_status step_motion(aisle_verify_moving *self) {
 static aisle_status step_brake(aisle_verify_moving *self) {
     const aisle_moving_motion *motion = &self->motion;
     self->stage = AISLE_MOVING_REST;
-    if (motion->square > 0.0 && !motion->leaves_rest) {
+    if (motion->square > 0.0) {
         const double down = motion->speeds.down;
         const aisle_moving_phase phase = {.from = motion->run,
                                           .to = motion->run + 0.5 * motion->square / down,

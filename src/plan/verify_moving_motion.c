@@ -79,10 +79,9 @@ static bool take_times(aisle_verify_moving *self, uint32_t i, aisle_verify_piece
         motion->speeds.length = 0.0;
         motion->rest = is_first ? piece->time * (1.0 - self->request.at_u) : slot - begun;
     } else {
-        const bool is_plain = motion->speeds.rests && !piece->on_spot; // its trapezoid fills its time
-        const double left = aisle_max(slot - aisle_verify_speed_time(&motion->speeds), 0.0);
+        const double left = aisle_max(slot - aisle_verify_speed_time(&motion->speeds), 0.0); // dwell included
         const bool starts = motion->speeds.rests || motion->speeds.v0 <= VERIFY_REST;
-        motion->rest = !starts || is_first ? 0.0 : (is_plain ? dwell : left) - begun;
+        motion->rest = starts && !is_first ? left - begun : 0.0;
         motion->late += starts ? 0.0 : left;
     }
     motion->rest = aisle_max(motion->rest, 0.0);

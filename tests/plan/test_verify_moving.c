@@ -417,6 +417,73 @@ static void test_what_comes_towards_it_is_off_where_and_when_it_rests_last(void)
     }
 }
 
+// A reach that grows fast is asked at the right instant.
+static void test_a_fast_mover_is_told_to_a_centimetre(void) {
+    const double q = 2.0 + 1.3 * 0.8 + 0.64, reach = 0.3 + 20.0 * (1.3 + 1.6 + AISLE_DRIVE_LAG);
+    aisle_mover *m = add_mover(q + 0.65 + 0.1 + reach - 0.001, 0.0, 0.3, 20.0);
+    asked.at_piece = 2;
+    asked.v = 0.8;
+    assert_refused();
+    m->at.x += 0.012;
+    assert_proved();
+}
+
+// As far as it gets at 3 m/s, over many pieces.
+static void test_nobody_at_the_far_end_of_what_can_be_driven_is_overlooked(void) {
+    const double q = 15.0 + 1.3 * 3.0 + 9.0; // in motion at full speed
+    vehicle.v_max = 4.0;
+    path_begin(0.0, 0.0, 0.0);
+    for (int i = 0; i < 160; i++) {
+        path_line(0.5);
+    }
+    path_end();
+    path_drive_gently(3.0);
+    ask(1.0);
+    asked.at_piece = 31;
+    asked.v = 3.0;
+    aisle_mover *m = add_mover(q + 0.65 + 0.1 + 0.3 - 0.001, 0.0, 0.3, 0.0);
+    assert_refused();
+    m->at.x += 0.012;
+    assert_proved();
+}
+
+static void test_a_bulge_of_an_arc_is_not_overlooked(void) {
+    vehicle_disc(0.2);
+    vehicle.margin = 0.0;
+    for (int i = 0; i < 2; i++) {
+        const double k = i == 0 ? 1.0 : 0.15, out = 1.0 / k + 0.2 + 0.05; // to the middle of a mover outside the arc
+        movers.count = 0;
+        path_begin(0.0, -1.0 / k, 0.0);
+        path_arc(k, 3.0);
+        drive(i == 0 ? 0.3 : 0.8);
+        ask(1.0);
+        asked.at_u = 0.5 - 0.1 * k;
+        asked.v = i == 0 ? 0.3 : 0.8;
+        aisle_mover *m = add_mover((out - 1e-3) * sin(1.5), -(out - 1e-3) * cos(1.5), 0.05, 0.0);
+        assert_refused();
+        m->at = aisle_vec2_of((out + 1e-3) * sin(1.5), -(out + 1e-3) * cos(1.5));
+        assert_proved();
+    }
+}
+
+static void test_the_end_of_a_piece_is_the_beginning_of_the_next(void) {
+    for (int i = 0; i < 200; i++) {
+        dice = aisle_rng_seed((uint64_t)i);
+        movers.count = 0;
+        (void)add_mover(uniform(3.0, 9.0), uniform(-2.0, 2.0), 0.3, uniform(0.0, 1.0));
+        asked.at_piece = 2;
+        asked.at_u = 1.0;
+        asked.v = 0.8;
+        const aisle_status end = prove();
+        const double clearance = moving.clearance, way = moving.blocked_way;
+        asked.at_piece = 3;
+        asked.at_u = 0.0;
+        TEST_ASSERT_EQUAL(end, prove());
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, clearance, moving.clearance);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, way, moving.blocked_way);
+    }
+}
+
 // One behind it may come as near as it likes once the vehicle has left: at its place only the present counts.
 static void test_what_follows_may_be_close(void) {
     asked.at_piece = 2;
@@ -590,6 +657,92 @@ static void test_the_dwell_at_its_place_is_what_the_request_says(void) {
     asked.at_piece = 1;
     asked.at_u = 1.0;
     assert_refused();
+    asked.v = 0.1; // at the very place, whatever its speed
+    assert_refused();
+}
+
+static void test_each_goal_has_its_own_dwell(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_line(1.0);
+    path_line(1.0);
+    path_line(2.0);
+    path_end();
+    for (int i = 1; i < 3; i++) {
+        path.waypoints[i].flags |= AISLE_WAYPOINT_GOAL | AISLE_WAYPOINT_STOP;
+        path.waypoints[i].goal_id = i;
+    }
+    ask(1.0);
+    goals[2] = path_goal;
+    asked.num_goals = 3;
+    (void)add_mover(3.1, 0.0, 0.3, 0.0); // behind the second
+    for (int i = 0; i < 2; i++) {
+        const aisle_path_msg was = path;
+        goals[0] = (aisle_goal_msg){.id = 1, .x = 1.0, .dwell = i == 0 ? 20.0F : 0.0F};
+        goals[1] = (aisle_goal_msg){.id = 2, .x = 2.0, .dwell = i == 0 ? 0.0F : 20.0F};
+        for (int k = 2 + i; k < path.num_waypoints; k++) {
+            path.waypoints[k].t += 20.0F;
+        }
+        path.duration += 20.0F;
+        path_seal();
+        asked.size = path_size;
+        asked.at_piece = 2;
+        asked.at_u = 0.97;
+        asked.v = 0.1;
+        TEST_ASSERT_EQUAL(i == 0 ? AISLE_ERR_DATA : AISLE_OK, prove());
+        path = was;
+    }
+}
+
+// What a turn has more time than the fastest is rest before it.
+static void test_a_turn_with_time_to_spare_comes_last(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_line(1.0);
+    path_turn(1.5);
+    path_line(2.0);
+    drive(0.4);
+    for (int i = 2; i < path.num_waypoints; i++) {
+        path.waypoints[i].t += 30.0F;
+    }
+    path.duration += 30.0F;
+    path_seal();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+    ask(1.0);
+    const double corner = hypot(0.6, 0.35) + 0.05 + 0.1 + 0.1 - 0.02;
+    (void)add_mover(1.0 + corner * cos(0.9), corner * sin(0.9), 0.1, 0.0);
+    asked.at_u = 0.99;
+    assert_proved();
+    asked.at_piece = 2;
+    asked.at_u = 0.0;
+    assert_refused();
+    asked.at_u = 0.1;
+    assert_refused();
+}
+
+// As much more time than the speeds say as verify.h allows, 1 ms on each of many short pieces.
+static void test_times_longer_than_the_speeds_make_late(void) {
+    for (int i = 0; i < 2; i++) {
+        path_begin(0.0, 0.0, 0.0);
+        for (int k = 0; k < 200; k++) {
+            path_line(0.05);
+        }
+        path_end();
+        path_drive_gently(0.8);
+        for (int k = 1; i == 1 && k < path.num_waypoints; k++) {
+            path.waypoints[k].t += 1e-3F * (float)k;
+        }
+        path.duration = path.waypoints[200].t;
+        path_seal();
+        TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+        ask(1.0);
+        asked.at_piece = 41;
+        asked.v = 0.8;
+        movers.count = 0;
+        const double q = 2.0 + 1.3 * 0.8 + 0.64, reach = 0.3 + 20.0 * (1.3 + 1.6 + AISLE_DRIVE_LAG);
+        (void)add_mover(q + 0.65 + 0.1 + reach + 0.3, 0.0, 0.3, 20.0); // 21 pieces are 0.42 m
+        TEST_ASSERT_EQUAL(i == 0 ? AISLE_OK : AISLE_ERR_DATA, prove());
+        mover[0].at.x += 0.15;
+        assert_proved();
+    }
 }
 
 // ---- what does not fit
@@ -610,17 +763,45 @@ static void test_bytes_or_movers_that_change_end_the_proof(void) {
 
 static void test_a_path_that_is_not_in_the_bytes_is_refused(void) {
     (void)add_mover(30.0, 0.0, 0.3, 1.6);
+    (void)add_mover(2.5, 2.0, 0.3, 0.0);
+    asked.at_piece = 2;
+    asked.v = 0.8;
     assert_proved();
-    path.waypoints[1].v *= 1.000001F;
-    assert_unfit();
-    path.waypoints[1].v /= 1.000001F;
-    path.waypoints[2].y = 1e-12;
-    assert_unfit();
-    path.waypoints[2].y = 0.0;
+    for (int i = 1; i < 4; i++) {
+        aisle_waypoint_msg *w = &path.waypoints[i];
+        const aisle_waypoint_msg was = *w;
+        for (int k = 0; k < 8; k++) {
+            w->x += k == 0 ? 1e-12 : 0.0;
+            w->y += k == 1 ? 1e-12 : 0.0;
+            w->theta += k == 2 ? 1e-12 : 0.0;
+            w->t += k == 3 ? 1e-5F : 0.0F;
+            w->curvature += k == 4 ? 1e-9F : 0.0F;
+            w->v *= k == 5 ? 1.000001F : 1.0F;
+            w->flags ^= (int16_t)(k == 6 ? AISLE_WAYPOINT_GOAL : 0);
+            w->goal_id += k == 7;
+            assert_unfit();
+            *w = was;
+        }
+    }
     path.num_waypoints--;
     assert_unfit();
     path.num_waypoints++;
     asked.size = 100;
+    assert_unfit();
+}
+
+// No path of verify.h: a piece in motion that takes far longer than its speeds say.
+static void test_times_that_fit_no_speeds_are_unfit(void) {
+    (void)add_mover(100.0, 0.0, 0.3, 2.0); // too far away to count within the time there is
+    (void)add_mover(4.0, 2.0, 0.3, 0.0);
+    asked.at_piece = 2;
+    asked.v = 0.8;
+    assert_proved();
+    for (int i = 2; i < path.num_waypoints; i++) {
+        path.waypoints[i].t += 60.0F;
+    }
+    path_seal();
+    asked.size = path_size;
     assert_unfit();
 }
 
@@ -694,14 +875,27 @@ static void test_as_many_movers_as_there_can_be(void) {
 
 // ---- against the judge
 
+static void vehicle_triangle(void) {
+    static aisle_vehicle_msg msg;
+    memset(&msg, 0, sizeof msg);
+    const double v[3][2] = {{uniform(-0.9, -0.2), uniform(-0.5, 0.0)},
+                            {uniform(0.2, 1.0), uniform(-0.4, 0.4)},
+                            {uniform(-0.9, 0.1), uniform(0.5, 0.8)}};
+    memcpy(msg.footprint, v, sizeof v);
+    msg.num_vertices = 3;
+    vehicle_from(&msg);
+}
+
 static void random_vehicle(void) {
-    const int kind = below(3);
+    const int kind = below(4);
     if (kind == 0) {
         vehicle_disc(uniform(0.1, 0.5));
     } else if (kind == 1) {
         vehicle_box(uniform(0.1, 0.9), uniform(0.1, 0.9), uniform(0.2, 0.8), below(2) == 0 ? 0.0 : 0.1);
-    } else {
+    } else if (kind == 2) {
         vehicle_box(-0.1, uniform(0.3, 1.2), uniform(0.2, 0.6), 0.0);
+    } else {
+        vehicle_triangle();
     }
     vehicle.margin = below(3) == 0 ? 0.0 : uniform(0.0, 0.2);
     vehicle.reaction_time = uniform(0.1, 0.5);
@@ -725,7 +919,9 @@ static void random_path(void) {
         }
     }
     path_end();
-    path_drive_gently(uniform(0.1, 0.7));
+    if (below(3) > 0) { // else from rest to rest
+        path_drive_gently(uniform(0.1, 0.7));
+    }
     TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
 }
 
@@ -943,6 +1139,10 @@ int main(int argc, char **argv) {
     RUN_TEST(test_at_the_end_of_the_path_all_is_proved);
     RUN_TEST(test_what_stands_beside_the_way_is_kept_off_by_the_margin);
     RUN_TEST(test_what_comes_towards_it_is_off_where_and_when_it_rests_last);
+    RUN_TEST(test_a_fast_mover_is_told_to_a_centimetre);
+    RUN_TEST(test_nobody_at_the_far_end_of_what_can_be_driven_is_overlooked);
+    RUN_TEST(test_a_bulge_of_an_arc_is_not_overlooked);
+    RUN_TEST(test_the_end_of_a_piece_is_the_beginning_of_the_next);
     RUN_TEST(test_what_follows_may_be_close);
     RUN_TEST(test_old_data_reach_farther);
     RUN_TEST(test_a_shorter_lease_asks_less);
@@ -954,8 +1154,12 @@ int main(int argc, char **argv) {
     RUN_TEST(test_half_a_turn_is_proved_both_ways_round);
     RUN_TEST(test_backwards_it_is_the_rear_that_counts);
     RUN_TEST(test_the_dwell_at_its_place_is_what_the_request_says);
+    RUN_TEST(test_each_goal_has_its_own_dwell);
+    RUN_TEST(test_a_turn_with_time_to_spare_comes_last);
+    RUN_TEST(test_times_longer_than_the_speeds_make_late);
     RUN_TEST(test_bytes_or_movers_that_change_end_the_proof);
     RUN_TEST(test_a_path_that_is_not_in_the_bytes_is_refused);
+    RUN_TEST(test_times_that_fit_no_speeds_are_unfit);
     RUN_TEST(test_any_waypoints_at_all_are_answered);
     RUN_TEST(test_the_answer_does_not_depend_on_the_steps);
     RUN_TEST(test_as_many_movers_as_there_can_be);
