@@ -16,7 +16,8 @@
 // No motion is against a DIRECTED zone (zones.h); tolls are not minded.
 // Cost: metres, AISLE_MANOEUVRE_REVERSE for one backwards, and what cusps and turns add (manoeuvre.c). Not an optimum,
 // and no proof where it finds none.
-// Files: manoeuvre.c (search), manoeuvre_targets.c, manoeuvre_shorten.c.
+// Files: manoeuvre.c (attempts, phases), manoeuvre_targets.c, manoeuvre_open.c (open list), manoeuvre_expand.c (successors),
+// manoeuvre_free.c (tests), manoeuvre_chain.c (the way found), manoeuvre_shorten.c.
 // Memory: 80 bytes a node and two slots of 16, nodes by the limit of cells; togo.h; 80 KiB. Time: AISLE_MANOEUVRE_UNITS
 // at most, sliced; a unit is an exact gap.
 #ifndef AISLE_PLAN_MANOEUVRE_H

@@ -8,9 +8,30 @@ static inline aisle_vec2 aisle_pose_place(aisle_pose2 pose) {
     return aisle_vec2_of(pose.x, pose.y);
 }
 
-// Does the body keep what it needs at this configuration; all along these moves from it on? Exact, a unit a gap.
+// manoeuvre_free.c: does the body keep what it needs at this configuration; all along these moves from it on? Exact, a unit a gap.
 bool aisle_manoeuvre_pose_free(aisle_manoeuvre *self, aisle_pose2 pose);
 bool aisle_manoeuvre_moves_free(aisle_manoeuvre *self, aisle_pose2 from, const aisle_move *moves, uint32_t count);
+
+// manoeuvre_open.c: the open list and the cells of configurations.
+//
+// Forgets both; side as in aisle_manoeuvre.
+void aisle_manoeuvre_begin_open(aisle_manoeuvre *self, double side);
+// Puts a node in, unless its cell is closed or holds enough, or nothing leads on from there.
+void aisle_manoeuvre_push(aisle_manoeuvre *self, const aisle_manoeuvre_node *node);
+// The next node to expand; AISLE_HEAP_NONE: there is none, or this one came to nothing (*ended tells which).
+uint32_t aisle_manoeuvre_next(aisle_manoeuvre *self, uint32_t most, bool *ended);
+
+// manoeuvre_expand.c: puts in what a node leads to, or where all begins.
+void aisle_manoeuvre_expand(aisle_manoeuvre *self, uint32_t n);
+void aisle_manoeuvre_push_root(aisle_manoeuvre *self, aisle_pose2 at, double theta);
+void aisle_manoeuvre_push_roots(aisle_manoeuvre *self, aisle_pose2 at, bool any_heading);
+
+// manoeuvre_chain.c
+//
+// The moves from a node's parent to it: moves[AISLE_REEDS_SHEPP_MOVES]; how many, 0: it is a root.
+uint32_t aisle_manoeuvre_moves_to(const aisle_manoeuvre *self, uint32_t n, aisle_move *moves);
+// Takes the chain that ends at n, and the tree's from there on, as the way. False: it is too long.
+bool aisle_manoeuvre_take_chain(aisle_manoeuvre *self, uint32_t n);
 
 static inline bool aisle_manoeuvre_is_goal(const aisle_manoeuvre_target *target) {
     return target->togo <= 0.0;
