@@ -22,6 +22,7 @@ void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel
 
 static void on_output(void *ctx, const aisle_replay_output *output) {
     aisle_sim_host *self = ctx;
+    self->heard_paths += output->channel == AISLE_CHANNEL_PATH ? 1 : 0;
     aisle_sim_host_write_log(self, output->utime, output->channel, output->bytes, output->size);
     self->heard(self->ctx, output->channel, output->utime, output->bytes, output->size);
 }
@@ -47,6 +48,14 @@ int64_t aisle_sim_host_clock_us(void) {
     return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
 }
 
+static void note_work(aisle_sim_host *self, int64_t start, int64_t before) {
+    int64_t took = aisle_sim_host_clock_us() - start;
+    aisle_histogram_add(&self->work, took);
+    if (self->heard_paths > before) {
+        aisle_histogram_add(&self->answers, took);
+    }
+}
+
 static void tell_status(aisle_sim_host *self, int64_t utime) {
     aisle_status_msg status;
     uint8_t bytes[512];
@@ -67,9 +76,9 @@ void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime) {
     if (self->units_per_ms > 0) {
         aisle_sim_host_slow_advance(self, utime);
     } else if (aisle_planner_next_deadline(self->engine.planner) <= utime) {
-        int64_t start = aisle_sim_host_clock_us();
+        int64_t start = aisle_sim_host_clock_us(), before = self->heard_paths;
         aisle_replay_advance(&self->replay, utime);
-        aisle_histogram_add(&self->work, aisle_sim_host_clock_us() - start);
+        note_work(self, start, before);
     }
     if (utime >= self->next_status_us) {
         tell_status(self, utime);
@@ -89,9 +98,9 @@ void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel chan
         return;
     }
     aisle_sim_host_write_log(self, utime, channel, bytes, size);
-    int64_t start = aisle_sim_host_clock_us();
+    int64_t start = aisle_sim_host_clock_us(), before = self->heard_paths;
     aisle_replay_input(&self->replay, utime, channel, bytes, size);
-    aisle_histogram_add(&self->work, aisle_sim_host_clock_us() - start);
+    note_work(self, start, before);
 }
 
 void aisle_sim_host_stop(aisle_sim_host *self) {

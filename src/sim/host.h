@@ -45,6 +45,7 @@ typedef struct aisle_sim_host {
     aisle_replay replay;
     int64_t next_status_us;
     int32_t status_seq;
+    int64_t heard_paths;  // on PATH
     aisle_histogram work; // us of the computer's time for each input and each deadline, or each step
     // core at a speed
     uint32_t units_per_ms; // 0: planning takes no time
@@ -59,7 +60,9 @@ typedef struct aisle_sim_host {
     uint32_t burst;                          // messages sent without a pause
     aisle_sim_sent sent[AISLE_SIM_SENT_MAX]; // the last inputs that paths name
     uint32_t num_sent;
-    aisle_histogram answers; // us from an input's sending to the first path that rests on it
+    // both: us of the work that brought a path (core, at once), or from an input's sending to the first path that rests on
+    // it (bus)
+    aisle_histogram answers;
 } aisle_sim_host;
 
 // The planner in this process, its output to `heard`. settings, log: as long as the host. AISLE_ERR_*: as

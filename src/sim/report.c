@@ -8,6 +8,16 @@ static double ms(const aisle_histogram *h, double share) {
     return (double)aisle_histogram_percentile(h, share) * 1e-3;
 }
 
+static void text_of_times(const char *what, const aisle_histogram *h, FILE *out) {
+    (void)fprintf(out, "%s, ms: p50 %.3f, p99 %.3f, max %.3f\n", what, ms(h, 0.5), ms(h, 0.99),
+                  (double)h->max_us * 1e-3);
+}
+
+static void json_of_times(const char *name, const aisle_histogram *h, FILE *out) {
+    (void)fprintf(out, ",\n  \"%s\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}", name,
+                  ms(h, 0.5), ms(h, 0.99), (double)h->max_us * 1e-3, h->count);
+}
+
 static void text_of_contacts(const aisle_sim_judge *judge, FILE *out) {
     (void)fprintf(out,
                   "collisions while moving %" PRId64 " (with the hall %" PRId64 "), contacts at rest %" PRId64
@@ -72,10 +82,11 @@ void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
     text_of_contacts(judge, out);
     text_of_paths(e, out);
     text_of_faults(e, out);
-    const aisle_histogram *h = e->host->lcm != NULL ? &e->host->answers : &e->host->work;
-    (void)fprintf(out, "%s, ms: p50 %.3f, p99 %.3f, max %.3f\n",
-                  e->host->lcm != NULL ? "from message to answer" : "work of each input and deadline", ms(h, 0.5),
-                  ms(h, 0.99), (double)h->max_us * 1e-3);
+    text_of_times(e->host->lcm != NULL ? "from message to answer" : "work of what brought a path", &e->host->answers,
+                  out);
+    if (e->host->lcm == NULL) {
+        text_of_times("work of each input and deadline", &e->host->work, out);
+    }
 }
 
 static void json_number(const char *name, double value, FILE *out) {
@@ -148,8 +159,7 @@ void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
     json_of_causes(e, out);
     json_of_contacts(judge, out);
     json_of_faults(e, out);
-    const aisle_histogram *h = e->host->lcm != NULL ? &e->host->answers : &e->host->work;
-    (void)fprintf(out, ",\n  \"%s\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}}\n",
-                  e->host->lcm != NULL ? "answer_ms" : "work_ms", ms(h, 0.5), ms(h, 0.99), (double)h->max_us * 1e-3,
-                  h->count);
+    json_of_times("answer_ms", &e->host->answers, out);
+    json_of_times("work_ms", &e->host->work, out);
+    (void)fprintf(out, "}\n");
 }
