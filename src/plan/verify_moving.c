@@ -6,8 +6,7 @@
 
 #include <string.h>
 
-#define TRAVEL_MIN 1e-3   // m of every body point, and
-#define GROWTH_MIN 5e-3   // m of the reach, below which no interval is halved
+#define TRAVEL_MIN 1e-3   // m of every body point, below which no interval is halved
 #define MOVERS_A_UNIT 16U // against an interval
 #define BOXES_A_UNIT 64U  // against the box of all ground
 #define LEASE_MAX 60.0    // s
@@ -281,7 +280,6 @@ static double later_at(const aisle_verify_moving *self, double u) {
 static bool take_interval(aisle_verify_moving *self) {
     const double hi = self->hi[self->depth - 1U], last = later_at(self, hi);
     aisle_moving_sweep_over(self, self->lo, hi, &self->sweep);
-    self->sweep.span = last - later_at(self, self->lo);
     self->sweep.at_us = at_us(self, last);
     self->intervals++;
     return last <= self->last; // else this is no path of verify.h
@@ -313,7 +311,7 @@ static aisle_status look(aisle_verify_moving *self, const aisle_mover *mover) {
     if (gap < self->least) {
         self->least = aisle_min(self->least, aisle_moving_end_gap(self, mover->at) - reach);
     }
-    const bool is_fine = self->sweep.travel < TRAVEL_MIN && mover->v_bound * self->sweep.span < GROWTH_MIN;
+    const bool is_fine = self->sweep.travel < TRAVEL_MIN; // the end of it is a place and time of the sweep
     if (gap >= wanted || (gap >= margin && is_fine)) {
         self->clearance = aisle_min(self->clearance, gap);
         return AISLE_OK;

@@ -19,7 +19,8 @@
 // Intervals of the sweep, as in verify.h: the hull of the footprint at both ends, grown by margin, the sagittas of arc and
 // turn and AISLE_VERIFY_EPSILON, is proved off the reaches at the last instant of the interval. A direction in which they are
 // apart is enough. What is not proved is halved, for the movers left alone, until each point of the body moves by less than
-// 1 mm and the reach grows by less than 5 mm. So refused is only what comes nearer than the margin and 1 cm.
+// 1 mm. The end of an interval is a place and an instant of the sweep, so refused is only what comes nearer there than the
+// margin and 1 mm.
 //
 // The motion. Speeds as in verify.h: linear in the square between moving ends, the trapezoid that fills the time (a goal's
 // dwell taken off) between resting ones. A turn is the fastest trapezoid that omega_max and alpha_max let it; what is left
@@ -99,8 +100,8 @@ typedef struct aisle_moving_stretch { // of the sweep: places of a run, and when
 typedef struct aisle_moving_sweep {                                      // the interval in hand
     aisle_vec2 a[AISLE_SHAPE_VERTICES_MAX], b[AISLE_SHAPE_VERTICES_MAX]; // footprint at both ends
     aisle_vec2 origin_a, origin_b;
-    double sagitta, travel, span; // m, m of every body point, s
-    int64_t at_us;                // end of the interval
+    double sagitta, travel; // m, and m of every body point
+    int64_t at_us;          // end of the interval
 } aisle_moving_sweep;
 
 typedef enum aisle_moving_stage {
