@@ -8,9 +8,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# What the build, the tests and the gates call. libclang-rt: sanitizers and libFuzzer. xz: unpacks Unity. liblcm-java: used where javac is.
+# What the build, the tests and the gates call. libclang-rt: sanitizers and libFuzzer. xz: unpacks Unity.
+# liblcm-java: used where javac is. chromium: plays the page of aisle view in a test.
 packages=(cmake ninja-build gcc g++ clang clang-format llvm libclang-rt-14-dev libc6-dev liblcm-dev liblcm-bin
-    liblcm-java libccd-dev libinih-dev python3 python3-venv iproute2 util-linux tar xz-utils git)
+    liblcm-java libccd-dev libinih-dev python3 python3-venv chromium iproute2 util-linux tar xz-utils git)
 python_packages=(lcm==1.5.3 -e '.[test]') # the rest is in pyproject.toml
 
 say() { printf 'setup: %s\n' "$*"; }

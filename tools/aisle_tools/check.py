@@ -242,6 +242,13 @@ def rest_to_rest_time(length: float, v_max: float, lim: dict[str, float]) -> flo
     return peak / up + peak / down + (length - ramps) / peak
 
 
+def rest_to_rest_peak(length: float, time: float, lim: dict[str, float]) -> float:
+    """m/s, of the trapezoid from rest to rest that takes this time."""
+    q = 0.5 / lim["a_max"] + 0.5 / lim["d_max"]
+    time = max(time, 1e-9)
+    return 2.0 * length / (time + math.sqrt(max(0.0, time * time - 4.0 * q * length)))
+
+
 def _piece_fault(a: waypoint_t, b: waypoint_t, p: geometry.Piece, body: Body) -> str:
     lim = body.limits
     v, dt = max(abs(a.v), abs(b.v)), b.t - a.t
@@ -318,9 +325,7 @@ def piece_energy(a: waypoint_t, b: waypoint_t, body: Body, dwell: float = 0.0) -
         return out
     gain = max(0.0, b.v * b.v - a.v * a.v)
     if max(a.v, b.v) <= REST:  # the peak of the trapezoid that takes the time
-        q = 0.5 / lim["a_max"] + 0.5 / lim["d_max"]
-        time = max(b.t - a.t - dwell, 1e-9)
-        gain = (2.0 * p.length / (time + math.sqrt(max(0.0, time * time - 4.0 * q * p.length)))) ** 2
+        gain = rest_to_rest_peak(p.length, b.t - a.t - dwell, lim) ** 2
     out.rolling = drag * p.length
     out.acceleration = 0.5 * lim["mass"] * gain / lim["drive_efficiency"]
     return out

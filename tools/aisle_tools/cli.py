@@ -20,10 +20,11 @@ COMMANDS = {
     "watch": ("watch", "live view of the daemon"),
     "sim": ("sim", "a simulated vehicle among simulated movers"),
     "plot": ("plot", "picture of the map and paths"),
+    "view": ("view", "a page that plays a recorded run"),
     "check": ("checks", "judge recorded paths independently"),
     "paper": ("paper", "a paper's figures beside ours, with pictures"),
 }
-WITHOUT_LOG = ("watch", "sim", "plot", "check", "paper")
+WITHOUT_LOG = ("watch", "sim", "plot", "view", "check", "paper")
 
 
 def join_negative(argv: list[str]) -> list[str]:

@@ -115,6 +115,60 @@ def reason(path: path_t) -> str:
     return text
 
 
+STATE_WORDS = [
+    "starting",
+    "waiting for input",
+    "nothing to do",
+    "planning",
+    "driving",
+    "blocked",
+    "held by command",
+    "fault",
+]
+CAUSE_WORDS = {
+    status_t.NO_LAYOUT: "no layout yet",
+    status_t.NO_VEHICLE: "no vehicle yet",
+    status_t.NO_POSE: "no pose yet",
+    status_t.POSE_STALE: "the pose is too old",
+    status_t.NOT_LOCALIZED: "the vehicle is not localised",
+    status_t.POSE_OUTSIDE: "the vehicle is outside the layout",
+    status_t.OBSTACLES_STALE: "source {id} of obstacles has fallen silent",
+    status_t.MAP_MISMATCH: "the input is for another map",
+    status_t.REVISION_GAP: "a revision of the layout is missing",
+    status_t.OUTDATED: "a newer revision is held already",
+    status_t.CONFLICT: "this revision is held with other content",
+    status_t.MALFORMED: "malformed input",
+    status_t.CLOCK_JUMP: "the clock jumped",
+    status_t.START_OCCUPIED: "no room where the vehicle stands, {what}",
+    status_t.GOAL_OCCUPIED: "no room at the goal, {what}",
+    status_t.GOAL_OUTSIDE: "{what} is outside the layout",
+    status_t.NO_PATH: "there is no way, proved",
+    status_t.BLOCKED_BY: "the way is blocked by mover {id}",
+    status_t.TOO_NARROW: "a gap is too narrow, {what}",
+    status_t.KINEMATIC: "the vehicle cannot turn there",
+    status_t.BUDGET: "the work units ran out",
+    status_t.YIELDING: "giving way to mover {id}",
+    status_t.OFF_PATH: "the vehicle is off its path",
+    status_t.LIMIT: "over limit {id}",
+    status_t.VERIFY_FAILED: "the path could not be proved",
+    status_t.WATCHDOG: "planning took too long",
+    status_t.INTERNAL: "internal fault",
+}
+
+
+def cause_in_words(cause: int, ident: int) -> str:
+    """As a person says it; empty for no cause."""
+    if cause == 0:
+        return ""
+    return CAUSE_WORDS.get(cause, cause_name(cause)).format(id=ident, what=what(cause, ident))
+
+
+def in_words(state: int, cause: int, ident: int) -> str:
+    """State and cause of a status_t in one line."""
+    word = STATE_WORDS[state] if 0 <= state < len(STATE_WORDS) else f"state {state}"
+    return f"{word}: {cause_in_words(cause, ident)}" if cause else word
+
+
 def obstacle(ident: int) -> str:
     return {-1: "the scanned map", -2: "the bounds"}.get(ident, f"polygon {ident}")
 
