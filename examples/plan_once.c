@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static unsigned char memory[2U << 20]; // aisle_planner_memsize() tells how much these limits need
+static unsigned char memory[3U << 20]; // aisle_planner_memsize() tells how much these limits need
 static aisle_layout_msg layout = {
     .map_id = 1,
     .map_revision = 1,

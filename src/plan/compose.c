@@ -370,11 +370,12 @@ aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_reques
     return AISLE_OK;
 }
 
-static void set_dwell(aisle_compose *self) {
+void aisle_goal_dwells(const aisle_waypoint_msg *w, uint32_t n, const aisle_goal_msg *goals, uint32_t num_goals,
+                       float *dwell) {
     uint32_t goal = 0;
-    for (uint32_t i = 0; i < (uint32_t)self->path->num_waypoints; i++) {
-        bool reached = (self->path->waypoints[i].flags & AISLE_WAYPOINT_GOAL) != 0 && goal < self->request.leg_count;
-        self->dwell[i] = reached ? self->request.goals[goal].dwell : 0.0F;
+    for (uint32_t i = 0; i < n; i++) {
+        bool reached = (w[i].flags & AISLE_WAYPOINT_GOAL) != 0 && goal < num_goals;
+        dwell[i] = reached ? goals[goal].dwell : 0.0F;
         goal += reached ? 1U : 0U;
     }
 }
@@ -382,7 +383,8 @@ static void set_dwell(aisle_compose *self) {
 static aisle_status finish(aisle_compose *self) {
     aisle_path_msg *path = self->path;
     const aisle_space *space = self->request.space;
-    set_dwell(self);
+    aisle_goal_dwells(path->waypoints, (uint32_t)path->num_waypoints, self->request.goals, self->request.leg_count,
+                      self->dwell);
     aisle_profile_sum sum;
     aisle_status st = aisle_profile_fill(space->vehicle, space->layout, path->waypoints, (uint32_t)path->num_waypoints,
                                          self->dwell, &sum);

@@ -77,6 +77,9 @@ aisle_status aisle_compose_start(aisle_compose *self, const aisle_compose_reques
 // AISLE_BUSY, then AISLE_OK; AISLE_ERR_ARG: degenerate geometry.
 aisle_status aisle_compose_step(aisle_compose *self, uint32_t units, uint32_t *spent);
 
+// Rest (s) at each of w[n] before going on, dwell[n]: what the goals told there, in this order, ask for. O(n).
+void aisle_goal_dwells(const aisle_waypoint_msg *w, uint32_t n, const aisle_goal_msg *goals, uint32_t num_goals,
+                       float *dwell);
 // Any heading will do?
 bool aisle_goal_heading_is_free(const aisle_goal_msg *goal);
 // Arriving with this heading (rad), must the body turn there? Half the goal's tolerance is kept for the way's end.

@@ -419,7 +419,7 @@ const aisle_goal_msg *aisle_mission_goal(const aisle_mission *self) {
 
 // ---- requests
 
-const aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose) {
+aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose) {
     aisle_request *request = &self->request;
     AISLE_ASSERT(self->wanted && self->left > 0U);
     for (uint32_t i = 0; i < self->left; i++) {

@@ -84,10 +84,6 @@ typedef struct aisle_mission {
     int64_t pose_us;       // then
     uint32_t serial;       // changes when what is asked does, other than by reaching goals in turn
     aisle_request request; // as asked last, its goals as planned last
-
-    bool has_path; // the planner's, as are these: its proved path
-    aisle_proof current;
-    aisle_path_msg *path; // current, decoded
 } aisle_mission;
 
 // No such ordering, or goals in any order that share an id (*id; else 0): nobody could tell which one is reached.
@@ -122,7 +118,7 @@ uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_vehicle *vehic
 
 // The request as it is now: the goals left, what is left of the first one's dwell, from this pose (NULL: there is none).
 // Wants goals left. Valid until asked again.
-const aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose);
+aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose);
 
 // Is this request of the mission (maybe a copy) out of date, so that its plan would be for nothing?
 bool aisle_mission_is_stale(const aisle_mission *self, const aisle_request *request);

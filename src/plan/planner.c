@@ -60,11 +60,13 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits, stan
     row(self, arena, &from, "requests");
     self->vehicle_msg = (aisle_vehicle_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_vehicle_msg));
     self->head = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
-    self->mission.path = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
-    self->mission.current.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
     self->refusal[0] = (uint8_t *)aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
     self->refusal[1] = (uint8_t *)aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
     row(self, arena, &from, "answers");
+    aisle_movers_carve(&self->movers, arena);
+    row(self, arena, &from, "moving obstacles");
+    aisle_drive_carve(&self->drive, arena);
+    row(self, arena, &from, "path under way");
     return self;
 }
 
@@ -126,24 +128,26 @@ static bool is_stale(const aisle_planner *self, const aisle_request *request) {
     return !request->is_query && aisle_mission_is_stale(&self->mission, request);
 }
 
-static void begin(aisle_planner *self, const aisle_request *request) {
+static void begin(aisle_planner *self, aisle_request *request) {
     if (!request->is_query) {
         self->mission.replan = false;
         self->mission.cause = 0;
+        aisle_planner_leave_from(self, request);
     }
     aisle_refusal why = aisle_planner_hindrance(self, request);
     if (why.cause != 0) {
-        aisle_planner_refuse(self, request, &why, NULL, 0, 0);
+        if (request->is_query) {
+            aisle_planner_refuse(self, request, &why, NULL, 0, 0);
+        } else {
+            aisle_planner_take_failure(self, request, &why, NULL, 0, 0);
+        }
         self->counters[request->is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
         return;
     }
+    aisle_planner_fill_head(self, request);
     aisle_path_msg *head = self->head;
-    head->utime = self->now_us;
-    head->boot_id = self->config.boot_id;
     head->path_revision = self->path_revision + 1;
-    head->t0_utime = self->now_us;
     head->valid_until_utime = self->now_us + AISLE_LEASE_US;
-    head->obstacles_utime = 0;
     aisle_route_start(self->route, self->layout, &self->vehicle, request, head);
     self->planning = true;
 }
@@ -153,7 +157,7 @@ static void begin_next(aisle_planner *self) {
         begin(self, aisle_planner_renew_request(self));
         return;
     }
-    const aisle_request *request = &self->queue[self->queue_head];
+    aisle_request *request = &self->queue[self->queue_head];
     self->queue_head = (self->queue_head + 1U) % self->config.limits.requests;
     self->queue_count--;
     if (!is_stale(self, request)) { // else cancelled or overtaken by a newer goal list
@@ -202,11 +206,15 @@ static void end_route(aisle_planner *self) {
     self->planning = false;
     count_route(self);
     const aisle_proof *answer = aisle_route_answer(route);
-    if (answer == NULL) {
+    if (route->request.is_query && answer != NULL) {
+        aisle_planner_reply(self, answer);
+    } else if (route->request.is_query) {
         aisle_planner_refuse(self, &route->request, &route->cause, route->told, route->told_count, route->spent);
+    } else if (answer == NULL) {
+        aisle_planner_take_failure(self, &route->request, &route->cause, route->told, route->told_count, route->spent);
         skip_unreachable(self);
-    } else if (route->request.is_query || !answer->told) {
-        aisle_planner_publish(self, &route->request, answer);
+    } else if (!answer->told) {
+        aisle_planner_take_plan(self, &route->request, answer);
     }
 }
 
@@ -219,8 +227,8 @@ static void step_route(aisle_planner *self, uint32_t units) {
     aisle_status st = aisle_route_step(self->route, units);
     if (st == AISLE_OK) {
         end_route(self);
-    } else if (st == AISLE_PARTIAL && !self->route->request.is_query) {
-        aisle_planner_publish(self, &self->route->request, &self->route->best);
+    } else if (st == AISLE_PARTIAL && !self->route->request.is_query && !self->leaving.under_way) {
+        aisle_planner_take_plan(self, &self->route->request, &self->route->best);
     }
 }
 
@@ -235,18 +243,10 @@ static void step_layout(aisle_planner *self, uint32_t units) {
         self->building = false;
         self->counters[AISLE_COUNTER_LAYOUTS]++;
         self->counters[AISLE_COUNTER_LAYOUT_WORK] += aisle_layout_work(self->layout);
+        self->drive.must_change = true; // what goes on is proved on this layout
+        self->cycle_wanted = true;
         aisle_mission_reconsider(&self->mission);
         aisle_planner_replan(self);
-    }
-}
-
-// ---- lease
-
-static void renew_lease(aisle_planner *self) {
-    int32_t id;
-    if (self->mission.has_path && !self->held && self->now_us >= self->lease_due_us &&
-        aisle_planner_lease_hindrance(self, self->now_us, &id) == 0) {
-        aisle_planner_renew(self);
     }
 }
 
@@ -265,15 +265,15 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
     }
     if (self->building) {
         step_layout(self, work_units);
+    } else if (aisle_planner_cycle_is_due(self)) {
+        aisle_planner_step_cycle(self, work_units);
     } else if (self->planning) {
         step_route(self, work_units);
     } else if (self->queue_count > 0U || self->mission.replan) {
         begin_next(self);
     }
-    if (!events_wait(self)) {
-        renew_lease(self);
-    }
-    return aisle_planner_is_busy(self) || events_wait(self) ? AISLE_BUSY : AISLE_OK;
+    const bool busy = aisle_planner_is_busy(self) || aisle_planner_cycle_is_due(self) || events_wait(self);
+    return busy ? AISLE_BUSY : AISLE_OK;
 }
 
 bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
@@ -290,9 +290,7 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
 }
 
 int64_t aisle_planner_next_deadline(const aisle_planner *self) {
-    int32_t id;
-    bool leased = self->mission.has_path && !self->held && aisle_planner_lease_hindrance(self, self->now_us, &id) == 0;
-    return leased ? self->lease_due_us : INT64_MAX;
+    return self->building ? INT64_MAX : aisle_planner_cycle_deadline(self);
 }
 
 const int64_t *aisle_planner_counters(const aisle_planner *self) {

@@ -6,7 +6,8 @@
 
 #define HEADING_MAX 1e4 // rad of a stop's heading; also of its tolerances, in their units
 bool aisle_planner_is_busy(const aisle_planner *self) {
-    return self->planning || self->building || self->queue_count > 0 || self->mission.replan;
+    return self->planning || self->building || self->queue_count > 0 || self->mission.replan ||
+           self->drive.stage != AISLE_DRIVE_IDLE;
 }
 
 // ---- requests
@@ -51,16 +52,6 @@ aisle_refusal aisle_planner_pose_hindrance(const aisle_planner *self) {
     return (aisle_refusal){0, 0, 0.0F};
 }
 
-static bool obstacle_present(const aisle_planner *self, int32_t *id) {
-    for (int i = 0; i < AISLE_OBSTACLES_MAX_SOURCES; i++) {
-        if (self->obstacle_id[i] != 0) {
-            *id = self->obstacle_id[i];
-            return true;
-        }
-    }
-    return false;
-}
-
 aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request) {
     int32_t id = 0;
     if (!aisle_layout_is_in_force(self->layout)) {
@@ -81,9 +72,6 @@ aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_req
     if (request->pose_utime == 0) {
         return (aisle_refusal){AISLE_STATUS_NO_POSE, 0, 0.0F};
     }
-    if (obstacle_present(self, &id)) {
-        return (aisle_refusal){AISLE_STATUS_BLOCKED_BY, id, 0.0F};
-    }
     return aisle_planner_pose_hindrance(self);
 }
 
@@ -91,14 +79,15 @@ aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_req
 
 int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us, int32_t *id) {
     *id = 0;
-    if (obstacle_present(self, id)) {
-        return AISLE_STATUS_BLOCKED_BY;
-    }
     double timeout = self->has_vehicle ? self->vehicle.pose_timeout : 0.2;
     if (!self->has_pose || (double)(now_us - self->pose_at_us) > timeout * 1e6) {
         return AISLE_STATUS_POSE_STALE;
     }
     aisle_refusal why = aisle_planner_pose_hindrance(self);
     *id = why.id;
+    if (why.cause == 0 && self->has_vehicle &&
+        aisle_movers_stale(&self->movers, now_us, self->vehicle.obstacles_timeout, id)) {
+        return AISLE_STATUS_OBSTACLES_STALE;
+    }
     return why.cause;
 }

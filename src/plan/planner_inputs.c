@@ -53,7 +53,9 @@ static aisle_status take_layout(aisle_planner *self, const aisle_input *input) {
     if (aisle_layout_is_staged(self->layout)) {
         aisle_layout_commit(self->layout);
         self->building = true;
-        aisle_planner_revoke(self, AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_revision(self->layout));
+        if (!aisle_drive_moves(&self->drive)) {
+            aisle_planner_revoke(self, AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_revision(self->layout));
+        }
     } else if (st == AISLE_OK) {
         return duplicate(self);
     }
@@ -81,6 +83,21 @@ static bool is_same_body(const aisle_vehicle *a, const aisle_vehicle *b) {
     return size == aisle_vehicle_content(b, bytes[1]) && memcmp(bytes[0], bytes[1], size) == 0;
 }
 
+// The plan is proved again for the vehicle as it is now; one that is at rest and has another body plans anew.
+static void change_vehicle_under_way(aisle_planner *self, bool is_same) {
+    const bool goes_on = self->drive.has_plan && (is_same || aisle_drive_moves(&self->drive));
+    if (goes_on) {
+        self->drive.must_change = true;
+        self->cycle_wanted = true;
+    } else {
+        aisle_planner_revoke(self, AISLE_STATUS_CONFLICT, self->vehicle.revision);
+    }
+    if (!goes_on || !is_same) {
+        aisle_mission_reconsider(&self->mission);
+        aisle_planner_replan(self);
+    }
+}
+
 static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *msg) {
     if (aisle_planner_is_busy(self)) {
         return AISLE_BUSY;
@@ -102,12 +119,7 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
     *self->vehicle_msg = *msg;
     self->has_vehicle = true;
     self->vehicle_sent = true;
-    if (is_same && self->mission.has_path && aisle_planner_reprove(self)) {
-        return AISLE_OK;
-    }
-    aisle_planner_revoke(self, AISLE_STATUS_CONFLICT, msg->vehicle_revision);
-    aisle_mission_reconsider(&self->mission);
-    aisle_planner_replan(self);
+    change_vehicle_under_way(self, is_same);
     return AISLE_OK;
 }
 
@@ -115,8 +127,10 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
 
 static void note_progress(aisle_planner *self) {
     const bool is_known = aisle_planner_pose_hindrance(self).cause == 0;
-    (void)aisle_mission_note_pose(&self->mission, &self->vehicle, is_known ? &self->pose : NULL);
-    self->mission.has_path = self->mission.has_path && self->mission.wanted;
+    uint32_t reached = aisle_mission_note_pose(&self->mission, &self->vehicle, is_known ? &self->pose : NULL);
+    for (; reached > 0U && self->drive.has_plan; reached--) {
+        aisle_drive_pass_goal(&self->drive);
+    }
 }
 
 // A mission refused for want of a pose is planned when there is one.
@@ -124,7 +138,7 @@ static void try_refused_mission(aisle_planner *self) {
     const aisle_mission *mission = &self->mission;
     bool by_pose = mission->cause == AISLE_STATUS_NO_POSE || mission->cause == AISLE_STATUS_NOT_LOCALIZED ||
                    mission->cause == AISLE_STATUS_MAP_MISMATCH;
-    if (!mission->wanted || mission->has_path || !by_pose || mission->replan) {
+    if (!mission->wanted || self->drive.has_plan || !by_pose || mission->replan) {
         return;
     }
     const aisle_request *request = aisle_planner_renew_request(self);
@@ -134,6 +148,9 @@ static void try_refused_mission(aisle_planner *self) {
 }
 
 static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
+    if (self->drive.stage != AISLE_DRIVE_IDLE) {
+        return AISLE_BUSY;
+    }
     if (fabs(msg->x) > AISLE_SHAPE_COORD_MAX || fabs(msg->y) > AISLE_SHAPE_COORD_MAX || fabs(msg->theta) > 1e4) {
         return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, msg->seq);
     }
@@ -146,7 +163,16 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
     self->pose = *msg;
     self->pose_at_us = self->now_us;
     self->has_pose = true;
+    self->cycle_wanted = true;
     note_progress(self);
+    if (self->has_vehicle) {
+        aisle_drive_locate(&self->drive, &self->vehicle, msg);
+    }
+    if (!self->mission.wanted && aisle_drive_is_stopping(&self->drive) && !aisle_drive_moves(&self->drive)) {
+        aisle_planner_revoke(self, 0, 0);
+    } else if (!self->mission.wanted && !aisle_drive_moves(&self->drive)) { // all is done
+        aisle_drive_drop(&self->drive);
+    }
     try_refused_mission(self);
     return AISLE_OK;
 }
@@ -172,8 +198,16 @@ static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) 
     return enqueue(self, &request);
 }
 
+// Nothing is left to do: a vehicle that moves is stopped by the next cycle.
+static void end_mission(aisle_planner *self) {
+    self->cycle_wanted = true;
+    if (!aisle_drive_moves(&self->drive)) {
+        aisle_planner_revoke(self, 0, 0);
+    }
+}
+
 static void cancel_mission(aisle_planner *self) {
-    aisle_planner_revoke(self, 0, 0);
+    end_mission(self);
     aisle_mission_cancel(&self->mission);
 }
 
@@ -183,7 +217,7 @@ static aisle_status skip_goal(aisle_planner *self, int32_t id) {
         return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, id);
     }
     if (!self->mission.wanted) {
-        aisle_planner_revoke(self, 0, 0);
+        end_mission(self);
     }
     return AISLE_OK;
 }
@@ -203,7 +237,7 @@ static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *m
     }
     aisle_mission_take(mission, msg);
     if (!mission->wanted) { // cancelled, or all of it was reached before
-        aisle_planner_revoke(self, 0, 0);
+        end_mission(self);
         return AISLE_OK;
     }
     return enqueue(self, aisle_planner_renew_request(self));
@@ -213,28 +247,26 @@ void aisle_planner_replan(aisle_planner *self) {
     self->mission.replan = self->mission.wanted;
 }
 
-const aisle_request *aisle_planner_renew_request(aisle_planner *self) {
+aisle_request *aisle_planner_renew_request(aisle_planner *self) {
     return aisle_mission_ask(&self->mission, self->has_pose ? &self->pose : NULL);
 }
 
 // ---- obstacles and commands
 
-// Moving obstacles are not planned around yet: while any is reported no path is out (it fails safe).
 static aisle_status take_obstacles(aisle_planner *self, const aisle_obstacles_msg *msg) {
-    if (msg->source < 0 || msg->source >= AISLE_OBSTACLES_MAX_SOURCES) {
-        return aisle_planner_reject(self, AISLE_STATUS_LIMIT, msg->source);
+    aisle_refusal why;
+    if (self->drive.stage != AISLE_DRIVE_IDLE) {
+        return AISLE_BUSY;
     }
-    self->obstacle_id[msg->source] = 0;
-    if (msg->num_obstacles > 0) {
-        int32_t id = msg->obstacles[0].id;
-        self->obstacle_id[msg->source] = id != 0 ? id : -1;
-        aisle_planner_revoke(self, AISLE_STATUS_BLOCKED_BY, id);
+    const aisle_status st =
+        aisle_movers_take(&self->movers, msg, self->now_us, aisle_layout_map_id(self->layout), &why);
+    if (st == AISLE_ERR_DATA) {
+        return aisle_planner_reject(self, why.cause, why.id);
     }
-    int32_t id;
-    if (self->mission.cause == AISLE_STATUS_BLOCKED_BY &&
-        aisle_planner_lease_hindrance(self, self->now_us, &id) != AISLE_STATUS_BLOCKED_BY) {
-        aisle_planner_replan(self);
+    if (st == AISLE_PARTIAL) {
+        return duplicate(self);
     }
+    self->cycle_wanted = true;
     return AISLE_OK;
 }
 
@@ -243,10 +275,12 @@ static aisle_status take_command(aisle_planner *self, const aisle_command_msg *m
     switch (msg->command) {
     case AISLE_COMMAND_HOLD:
         self->held = true;
+        self->cycle_wanted = true;
         break;
     case AISLE_COMMAND_RESUME:
         self->held = false;
         self->lease_due_us = self->now_us;
+        self->cycle_wanted = true;
         break;
     case AISLE_COMMAND_CANCEL:
         if (msg->arg != 0) {

@@ -1,13 +1,16 @@
 // planner_state.h - what lies behind planner.h; for planner*.c alone. Level 4.
 //
-// planner.c: memory, step, events. planner_inputs.c: what each message does. planner_hindrance.c: what keeps a
-// request or a
-// lease from going on. planner_answer.c: paths and reasons out. planner_status.c: the heartbeat, names of causes.
+// planner.c: memory, step, events. planner_inputs.c: what each message does. planner_hindrance.c: what keeps a request or
+// a lease from going on. planner_drive.c: the cycle of a mission under way. planner_answer.c: paths and reasons out.
+// planner_status.c: the heartbeat, names of causes.
 #ifndef AISLE_PLAN_PLANNER_STATE_H
 #define AISLE_PLAN_PLANNER_STATE_H
 
 #include "aisle/planner.h"
+#include "plan/drive.h"
 #include "plan/mission.h"
+#include "plan/route.h"
+#include "world/movers.h"
 
 #define AISLE_REFUSAL_BYTES 1024U // of an encoded path_t with at most AISLE_ROUTE_TOLD_MAX waypoints
 #define AISLE_MEMORY_ROWS 8U
@@ -15,9 +18,19 @@
 typedef struct aisle_outgoing { // a path_t waiting to be pulled
     const uint8_t *bytes;
     size_t size;
-    const aisle_stamp *stamp; // NULL: a refusal, nothing to drive
+    const aisle_stamp *stamp;         // NULL: a refusal, nothing to drive
+    const aisle_moving_stamp *moving; // of a path to drive
     bool waiting;
 } aisle_outgoing;
+
+typedef struct aisle_leaving { // where a plan made under way leaves the one before
+    bool under_way;            // else it begins where the vehicle stands
+    bool round;                // it goes round a moving obstacle: that there is none is no reason to stop
+    aisle_place from;          // on the plan of this serial
+    uint32_t serial;
+    double delay;   // s, that planning may take; more after each time it took longer
+    uint32_t tries; // that failed
+} aisle_leaving;
 
 struct aisle_planner {
     aisle_config config; // limits resolved
@@ -32,7 +45,12 @@ struct aisle_planner {
     int64_t pose_at_us; // when it was submitted
     bool has_pose;
     bool held;
-    int32_t obstacle_id[AISLE_OBSTACLES_MAX_SOURCES]; // a moving obstacle some source reports; 0 = none
+    aisle_movers movers;
+    aisle_drive drive;     // the mission's plan and what is out of it
+    aisle_leaving leaving; // of the mission's request under way
+    bool cycle_wanted;     // something that a cycle goes by is new
+    aisle_refusal failed;  // the mission cannot be planned, and the vehicle is still to be stopped; cause 0: it can
+    int64_t looked_us;     // when going round was last weighed
     int32_t command_id;
     aisle_request *queue; // [limits.requests] ring
     uint32_t queue_head, queue_count;
@@ -43,8 +61,8 @@ struct aisle_planner {
     aisle_path_msg *head;  // of answers; waypoints unused but those of a refusal
     uint8_t *refusal[2];   // [AISLE_REFUSAL_BYTES] for PATH and REPLY
     aisle_outgoing out[2]; // by aisle_event_kind
-    int64_t lease_due_us;
-    int16_t cause; // of the last refused input, until one of its kind is taken
+    int64_t lease_due_us;  // when what is out is to be sent again
+    int16_t cause;         // of the last refused input, until one of its kind is taken
     aisle_input_kind cause_kind;
     int32_t cause_id;
     int64_t counters[AISLE_COUNTER_COUNT];
@@ -59,7 +77,7 @@ bool aisle_planner_is_busy(const aisle_planner *self); // a request is waiting o
 aisle_refusal aisle_planner_hindrance(const aisle_planner *self, const aisle_request *request);
 // What keeps anyone from driving by the pose at hand, its age left out; cause 0: nothing.
 aisle_refusal aisle_planner_pose_hindrance(const aisle_planner *self);
-// Why the mission's path must not be driven at now_us; 0: it may. *id: what is meant.
+// Why the vehicle must not drive on at now_us, whatever the path; 0: it may. *id: what is meant.
 int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us, int32_t *id);
 
 // planner_answer.c
@@ -67,24 +85,39 @@ int16_t aisle_planner_lease_hindrance(const aisle_planner *self, int64_t now_us,
 // Queues a path_t of status NONE with the places told; told_count at most AISLE_ROUTE_TOLD_MAX.
 void aisle_planner_refuse(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
                           const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units);
-// Queues a proved path: as REPLY from where it lies, as PATH after copying it to the mission, whose goals take its
-// order; one that must not be
-// driven now is kept back until its lease may begin.
-void aisle_planner_publish(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);
-// Queues the mission's path once more with its lease renewed.
-void aisle_planner_renew(aisle_planner *self);
-// The vehicle's revision has changed and nothing else: the mission's path goes on under the new one, as the next path
-// revision, on the strength of its proof. False: that does not stand, nothing may be sent.
-bool aisle_planner_reprove(aisle_planner *self);
-// Ends the mission's path, if it has one.
+// Queues a proved path that answers a query, from where it lies.
+void aisle_planner_reply(aisle_planner *self, const aisle_proof *proof);
+// Queues what is out (drive.h), leased from now on.
+void aisle_planner_send(aisle_planner *self);
+// Tells that there is nothing to drive for now, unless that was told already; the plan stays.
+void aisle_planner_withdraw(aisle_planner *self, const aisle_refusal *why);
+// Tells that there is nothing to drive, if there is a plan, and forgets it.
 void aisle_planner_revoke(aisle_planner *self, int16_t cause, int32_t id);
+// ids and times of a path of this request as of now.
+void aisle_planner_fill_head(aisle_planner *self, const aisle_request *request);
+
+// planner_drive.c
+
+// Is a cycle under way or due?
+bool aisle_planner_cycle_is_due(const aisle_planner *self);
+// Spends about `units` on it.
+void aisle_planner_step_cycle(aisle_planner *self, uint32_t units);
+// When one is due by itself; INT64_MAX: never.
+int64_t aisle_planner_cycle_deadline(const aisle_planner *self);
+// Where the mission's next plan starts: the vehicle's place, or one ahead of it while it moves.
+void aisle_planner_leave_from(aisle_planner *self, aisle_request *request);
+// A path for the mission was found: it becomes the plan, or the end of it; or it is too late for that, and asked for anew.
+void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, const aisle_proof *proof);
+// None was found: said at once to a vehicle at rest, else when it has been stopped.
+void aisle_planner_take_failure(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
+                                const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units);
 
 // planner_inputs.c
 
 // Has the mission planned again, if there is one.
 void aisle_planner_replan(aisle_planner *self);
 // The mission's request as it is now: the goals left, from the present pose.
-const aisle_request *aisle_planner_renew_request(aisle_planner *self);
+aisle_request *aisle_planner_renew_request(aisle_planner *self);
 // AISLE_ERR_DATA, with the cause kept for status().
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id);
 #endif

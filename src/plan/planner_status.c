@@ -15,40 +15,37 @@ static int8_t state_of(const aisle_planner *self, int64_t now_us, int16_t *cause
     if (self->held) {
         return AISLE_STATUS_HELD;
     }
-    if (aisle_planner_is_busy(self) && !mission->has_path) {
+    if (aisle_planner_is_busy(self) && !self->drive.has_plan) {
         return AISLE_STATUS_PLANNING;
     }
     if (!mission->wanted) {
         return AISLE_STATUS_IDLE;
     }
+    const aisle_drive *drive = &self->drive;
     int32_t id = 0;
-    int16_t stopped = mission->has_path ? aisle_planner_lease_hindrance(self, now_us, &id) : mission->cause;
-    if (stopped != 0 || !mission->has_path) {
+    int16_t stopped = drive->has_plan ? aisle_planner_lease_hindrance(self, now_us, &id) : mission->cause;
+    if (stopped != 0 || !drive->has_plan) {
         *cause = stopped;
-        *cause_id = mission->has_path ? id : mission->cause_id;
+        *cause_id = drive->has_plan ? id : mission->cause_id;
         return AISLE_STATUS_BLOCKED;
     }
-    return AISLE_STATUS_ACTIVE;
+    if (drive->why.cause != 0) { // slowed or stopped
+        *cause = drive->why.cause;
+        *cause_id = drive->why.id;
+    }
+    return drive->has_out && drive->out.level < AISLE_PACE_STOP ? AISLE_STATUS_ACTIVE : AISLE_STATUS_BLOCKED;
 }
 
-// Distance and time left, from the waypoint nearest to the pose on.
+// Distance and time left of the plan, as fast as the ground allows.
 static void remaining(const aisle_planner *self, aisle_status_msg *status) {
-    const aisle_path_msg *path = self->mission.path;
-    if (!self->mission.has_path || path->num_waypoints < 1) {
+    const aisle_drive_path *plan = &self->drive.plan;
+    if (!self->drive.has_plan) {
         return;
     }
-    int16_t nearest = 0;
-    double least = -1.0;
-    for (int16_t i = 0; i < path->num_waypoints; i++) {
-        const aisle_waypoint_msg *w = &path->waypoints[i];
-        double away = aisle_vec2_distance(aisle_vec2_of(w->x, w->y), aisle_vec2_of(self->pose.x, self->pose.y));
-        if (least < 0.0 || away < least) {
-            least = away;
-            nearest = i;
-        }
-    }
-    status->distance_remaining = path->length - path->waypoints[nearest].s;
-    status->time_remaining = path->duration - path->waypoints[nearest].t;
+    const uint32_t n = (uint32_t)(uint16_t)plan->msg->num_waypoints;
+    const aisle_waypoint_msg *w = plan->msg->waypoints;
+    status->distance_remaining = w[n - 1U].s - (float)aisle_motion_length_to(w, n, plan->at);
+    status->time_remaining = w[n - 1U].t - (float)aisle_motion_time(&self->vehicle, w, n, plan->dwell, plan->at);
 }
 
 static float age(bool known, int64_t now_us, int64_t since_us) {
@@ -58,17 +55,18 @@ static float age(bool known, int64_t now_us, int64_t since_us) {
 void aisle_planner_status(const aisle_planner *self, int64_t now_us, aisle_status_msg *status) {
     const aisle_mission *mission = &self->mission;
     int64_t now = now_us > self->now_us ? now_us : self->now_us;
-    *status = (aisle_status_msg){.utime = now_us,
-                                 .boot_id = self->config.boot_id,
-                                 .protocol = AISLE_PROTOCOL,
-                                 .map_id = aisle_layout_map_id(self->layout),
-                                 .map_revision = aisle_layout_map_revision(self->layout),
-                                 .vehicle_revision = self->has_vehicle ? self->vehicle.revision : 0,
-                                 .path_revision = self->path_revision,
-                                 .command_id = self->command_id,
-                                 .pose_age = age(self->has_pose, now, self->pose_at_us),
-                                 .obstacles_age = -1.0F,
-                                 .num_rejected = (int32_t)self->counters[AISLE_COUNTER_REJECTED]};
+    *status = (aisle_status_msg){
+        .utime = now_us,
+        .boot_id = self->config.boot_id,
+        .protocol = AISLE_PROTOCOL,
+        .map_id = aisle_layout_map_id(self->layout),
+        .map_revision = aisle_layout_map_revision(self->layout),
+        .vehicle_revision = self->has_vehicle ? self->vehicle.revision : 0,
+        .path_revision = self->path_revision,
+        .command_id = self->command_id,
+        .pose_age = age(self->has_pose, now, self->pose_at_us),
+        .obstacles_age = age(aisle_movers_utime(&self->movers) != 0, now, aisle_movers_utime(&self->movers)),
+        .num_rejected = (int32_t)self->counters[AISLE_COUNTER_REJECTED]};
     status->state = state_of(self, now, &status->cause, &status->cause_id);
     if (mission->known && !mission->cancelled) {
         status->goal_list_id = mission->list_id;

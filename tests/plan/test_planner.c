@@ -708,6 +708,24 @@ static void test_any_order_takes_the_nearest_goal_first(void) {
 
 // ---- goal lists
 
+// Along the path up to waypoint `end`, a step of at most 0.3 m and 0.15 rad at a time; passing goals it does not rest.
+static void drive_along(int16_t end) {
+    static aisle_path_msg path;
+    path = door_path;
+    for (int16_t i = 1; i <= end; i++) {
+        const door_piece piece = door_piece_of(&path.waypoints[i - 1], &path.waypoints[i]);
+        const int steps = 1 + (int)fmax(piece.length / 0.3, fabs(piece.turn) / 0.15);
+        for (int k = 1; k <= steps; k++) {
+            const aisle_pose2 pose = door_piece_at(&piece, (double)k / steps);
+            here.x = pose.x;
+            here.y = pose.y;
+            here.theta = pose.theta;
+            here.vx = 0.2F;
+            door_wait(50000, &here);
+        }
+    }
+}
+
 static void test_a_goal_list_is_answered_by_a_leased_path_from_the_pose(void) {
     take_hall();
     stand_and_go();
@@ -988,16 +1006,21 @@ static void test_unknown_commands_are_refused(void) {
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_MALFORMED, status_now().cause);
 }
 
+// A source's snapshot: nothing, or a person so near ahead of (2, 4) that nobody may start.
 static aisle_status obstacles(int32_t source, int16_t n, int32_t id) {
     static aisle_obstacles_msg msg;
+    static int32_t seq;
     memset(&msg, 0, sizeof msg);
+    msg.utime = door_now;
+    msg.seq = ++seq;
     msg.source = source;
     msg.num_obstacles = n;
-    msg.obstacles[0].id = id;
+    msg.obstacles[0] =
+        (aisle_obstacle_msg){.id = id, .kind = AISLE_OBSTACLE_PERSON, .x = 3.2, .y = 4.3, .radius = 0.3F};
     return door_submit(AISLE_INPUT_OBSTACLES, &msg);
 }
 
-static void test_no_path_is_out_while_a_moving_obstacle_is_reported(void) {
+static void test_no_path_is_out_while_a_moving_obstacle_is_too_near(void) {
     take_hall();
     stand_and_go();
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(0, 0, 0));
@@ -1006,13 +1029,17 @@ static void test_no_path_is_out_while_a_moving_obstacle_is_reported(void) {
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(1, 1, 42));
     door_settle();
     TEST_ASSERT_EQUAL_INT(2, door_paths);
-    revoked_with(AISLE_STATUS_BLOCKED_BY, 42);
+    revoked_with(AISLE_STATUS_YIELDING, 42);
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(0, 0, 0)); // another source sees nothing
-    door_wait(1000000, &here);
+    door_settle();
     TEST_ASSERT_EQUAL_INT(2, door_paths);
     TEST_ASSERT_EQUAL(AISLE_STATUS_BLOCKED, status_now().state);
-    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_BLOCKED_BY, status_now().cause);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_YIELDING, status_now().cause);
     TEST_ASSERT_EQUAL_INT32(42, status_now().cause_id);
+    door_wait(1000000, &here);
+    TEST_ASSERT_EQUAL_INT(2, door_paths);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_OBSTACLES_STALE, status_now().cause); // who spoke once must keep speaking
+    TEST_ASSERT_EQUAL_INT32(0, status_now().cause_id);
     TEST_ASSERT_EQUAL(AISLE_ERR_DATA, obstacles(4, 0, 0));
     TEST_ASSERT_EQUAL(AISLE_ERR_DATA, obstacles(-1, 0, 0));
 }
@@ -1022,22 +1049,21 @@ static void test_the_way_goes_on_when_the_moving_obstacle_is_gone(void) {
     stand_and_go();
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(1, 1, 42));
     door_settle();
-    here.x = 2.5;
-    door_wait(50000, &here);
+    TEST_ASSERT_EQUAL_INT(2, door_paths);
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(1, 0, 0));
     door_settle();
     TEST_ASSERT_EQUAL_INT(3, door_paths);
     door_judge(&door_path);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.5, door_path.waypoints[0].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, door_path.waypoints[0].x);
     TEST_ASSERT_EQUAL(AISLE_STATUS_ACTIVE, status_now().state);
 }
 
-static void test_goals_that_come_while_a_moving_obstacle_is_reported_wait_for_it(void) {
+static void test_goals_that_come_while_a_moving_obstacle_is_too_near_wait_for_it(void) {
     take_hall();
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(2, 1, 43));
     stand_and_go();
     TEST_ASSERT_EQUAL_INT(1, door_paths);
-    revoked_with(AISLE_STATUS_BLOCKED_BY, 43);
+    revoked_with(AISLE_STATUS_YIELDING, 43);
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(2, 0, 0));
     door_settle();
     TEST_ASSERT_EQUAL_INT(2, door_paths);
@@ -1054,8 +1080,8 @@ static void test_a_moving_obstacle_that_appears_while_planning_keeps_the_path_ba
     TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_planner_step(door, door_now, 10));
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(0, 1, 44));
     door_settle();
-    TEST_ASSERT_EQUAL_INT(0, door_paths);
-    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_BLOCKED_BY, status_now().cause);
+    TEST_ASSERT_EQUAL_INT(1, door_paths);
+    revoked_with(AISLE_STATUS_YIELDING, 44);
     TEST_ASSERT_EQUAL(AISLE_OK, obstacles(0, 0, 0));
     door_settle();
     TEST_ASSERT_EQUAL(AISLE_STATUS_ACTIVE, status_now().state);
@@ -1155,7 +1181,7 @@ static void test_a_newer_list_takes_over_from_one_not_yet_planned(void) {
 static void test_a_goal_reached_at_rest_ends_the_mission(void) {
     take_hall();
     stand_and_go();
-    here.x = 10.0;
+    drive_along((int16_t)(door_path.num_waypoints - 1));
     here.vx = 0.2F; // passing through is not reaching
     door_wait(50000, &here);
     TEST_ASSERT_EQUAL(AISLE_STATUS_ACTIVE, status_now().state);
@@ -1177,9 +1203,7 @@ static void test_a_goal_reached_at_rest_ends_the_mission(void) {
 static void test_a_new_list_while_standing_on_its_goal_is_answered_all_the_same(void) {
     take_hall();
     stand_and_go();
-    here.x = 6.0;
-    here.y = 6.0;
-    aisle_goal_list_msg goals = door_goals(2, 6.0, 6.0);
+    aisle_goal_list_msg goals = door_goals(2, here.x, here.y);
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
     int before = door_paths;
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
@@ -1217,18 +1241,21 @@ static void test_status_names_the_next_goal_of_several(void) {
 static void test_a_new_layout_revokes_the_path_and_plans_again_from_the_present_pose(void) {
     take_hall();
     stand_and_go();
-    here.x = 3.0;
+    drive_along(2);
+    here.vx = 0.0F;
     door_wait(50000, &here);
+    TEST_ASSERT_TRUE(here.x > 2.1);
     int32_t revision = door_path.path_revision;
+    const int before = door_paths;
     hall_add(2.0, 6.0, 4.0, 7.5);
     TEST_ASSERT_EQUAL(AISLE_OK, door_layout(2));
     door_pull_events();
-    TEST_ASSERT_EQUAL_INT(2, door_paths);
+    TEST_ASSERT_EQUAL_INT(before + 1, door_paths);
     revoked_with(AISLE_STATUS_MAP_MISMATCH, 2);
     door_settle();
-    TEST_ASSERT_EQUAL_INT(3, door_paths);
+    TEST_ASSERT_EQUAL_INT(before + 2, door_paths);
     door_judge(&door_path);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, door_path.waypoints[0].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, here.x, door_path.waypoints[0].x);
     TEST_ASSERT_EQUAL_INT32(2, door_path.map_revision);
     TEST_ASSERT_EQUAL_INT32(revision + 2, door_path.path_revision);
 }
@@ -1400,9 +1427,9 @@ int main(void) {
     RUN_TEST(test_cancel_ends_a_plan_under_way_without_an_event);
     RUN_TEST(test_a_list_cancelled_before_its_turn_is_not_even_refused);
     RUN_TEST(test_unknown_commands_are_refused);
-    RUN_TEST(test_no_path_is_out_while_a_moving_obstacle_is_reported);
+    RUN_TEST(test_no_path_is_out_while_a_moving_obstacle_is_too_near);
     RUN_TEST(test_the_way_goes_on_when_the_moving_obstacle_is_gone);
-    RUN_TEST(test_goals_that_come_while_a_moving_obstacle_is_reported_wait_for_it);
+    RUN_TEST(test_goals_that_come_while_a_moving_obstacle_is_too_near_wait_for_it);
     RUN_TEST(test_a_moving_obstacle_that_appears_while_planning_keeps_the_path_back);
     RUN_TEST(test_without_a_pose_the_goals_wait_for_one);
     RUN_TEST(test_goal_lists_held_are_duplicates_older_ones_outdated_other_ones_conflicts);

@@ -321,6 +321,7 @@ static void test_another_list_takes_over_from_its_first_goal_on(void) {
     (void)add(12, 10.0, 1.0);
     start_list();
     (void)drive_until(12);
+    drive(2.0); // it is on its way
     list.goal_list_id = 5;
     send_list();
     drive(0.5);

@@ -350,8 +350,6 @@ static void test_a_mission_goes_on_by_goal_id_in_the_order_chosen(void) {
     go(&goals);
     passed(&door_path, 3, (const int32_t[]){33, 32, 31});
     TEST_ASSERT_EQUAL_INT32(33, status_now().goal_id);
-    stand_at(10.0, 5.0); // by 31, which is not its turn
-    TEST_ASSERT_EQUAL_INT32(33, status_now().goal_id);
     stand_at(6.0, 2.0);
     TEST_ASSERT_EQUAL_INT32(32, status_now().goal_id);
     stand_at(3.0, 6.0);

@@ -1,0 +1,610 @@
+#include "plan/drive.h"
+
+#include "base/angle.h"
+#include "base/check.h"
+#include "robot/curve.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#define RESTING 0.01    // m/s, rad/s: slower is at rest
+#define BACK 0.3        // m, how far behind its last place the vehicle may be found
+#define AHEAD 0.5       // m, and ahead of where it could have got to
+#define AGE_MAX 0.3     // s, a pose is moved on by at most
+#define LEASE_LEAST 0.2 // s
+#define PACE_LEASE 0.35 // s, that new speeds are chosen to be safe for: so they stay so for a while
+#define START_LEASE 0.5 // s, the same of a vehicle at rest: no creeping up to what it waits for
+#define JOINT 1e-6      // m, two ways that meet are apart by at most
+#define SNAP 2e-6       // m, shorter stretches are none
+
+static double lease_most(void) {
+    return (double)AISLE_LEASE_US * 1e-6;
+}
+
+// ---- memory
+
+static void carve_path(aisle_drive_path *path, aisle_arena *arena) {
+    path->msg = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    path->dwell = (float *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+}
+
+void aisle_drive_carve(aisle_drive *self, aisle_arena *arena) {
+    carve_path(&self->plan, arena);
+    carve_path(&self->out, arena);
+    carve_path(&self->next, arena);
+    self->out.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    self->next.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    self->head = (aisle_path_msg *)aisle_arena_take(arena, 1U, offsetof(aisle_path_msg, waypoints));
+    aisle_pace_carve(&self->pace, arena);
+    self->decoded = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+}
+
+// ---- the plan
+
+static uint32_t count_of(const aisle_drive_path *path) {
+    return (uint32_t)(uint16_t)path->msg->num_waypoints;
+}
+
+static aisle_place first_place(uint32_t n) {
+    return n > 1U ? (aisle_place){1U, 0.0} : (aisle_place){0U, 0.0};
+}
+
+static void put_dwell(const aisle_drive *self, aisle_drive_path *path) {
+    aisle_goal_dwells(path->msg->waypoints, count_of(path), self->goals + self->passed, self->num_goals - self->passed,
+                      path->dwell);
+}
+
+static void take_plan(aisle_drive *self, const aisle_waypoint_msg *w, uint32_t n, const aisle_goal_msg *goals,
+                      uint32_t num_goals) {
+    AISLE_ASSERT(num_goals <= AISLE_GOAL_LIST_MAX_GOALS && n >= 1U && n <= AISLE_PATH_MAX_WAYPOINTS);
+    memcpy(self->plan.msg->waypoints, w, n * sizeof w[0]);
+    self->plan.msg->num_waypoints = (int16_t)n;
+    self->plan.at = first_place(n);
+    memmove(self->goals, goals, num_goals * sizeof goals[0]);
+    self->num_goals = num_goals;
+    self->passed = 0;
+    put_dwell(self, &self->plan);
+    self->has_plan = true;
+    self->must_change = true;
+    self->is_fresh = self->is_unfit = false;
+    self->plan_serial++;
+    self->stage = AISLE_DRIVE_IDLE;
+}
+
+void aisle_drive_adopt(aisle_drive *self, const aisle_proof *proof, const aisle_goal_msg *goals, uint32_t num_goals) {
+    aisle_drive_path *next = &self->next;
+    aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, next->msg, NULL);
+    AISLE_ASSERT(st == AISLE_OK && !aisle_drive_moves(self));
+    memcpy(self->plan.msg, next->msg, offsetof(aisle_path_msg, waypoints));
+    take_plan(self, next->msg->waypoints, count_of(next), goals, num_goals);
+    memcpy(next->bytes, proof->bytes, proof->size);
+    next->size = proof->size;
+    next->stamp = proof->stamp;
+    next->at = self->plan.at;
+    next->passed = 0;
+    next->level = 0;
+    put_dwell(self, next);
+    self->is_fresh = true;
+    self->has_out = false;
+    self->is_off = false;
+}
+
+void aisle_drive_drop(aisle_drive *self) {
+    self->has_plan = self->has_out = self->must_change = self->is_fresh = self->is_off = self->is_unfit = false;
+    self->stage = AISLE_DRIVE_IDLE;
+    self->why = (aisle_refusal){0, 0, 0.0F};
+}
+
+// ---- where the vehicle is
+
+static bool is_beyond(aisle_place a, aisle_place b) {
+    return a.piece > b.piece || (a.piece == b.piece && a.u > b.u);
+}
+
+bool aisle_drive_moves(const aisle_drive *self) {
+    return self->has_out && !self->is_resting;
+}
+
+// The waypoint of the first goal after the first one, as a place; the end of the path if there is none.
+static aisle_place next_goal(const aisle_drive_path *path) {
+    const uint32_t n = count_of(path);
+    uint32_t i = 1;
+    while (i + 1U < n && (path->msg->waypoints[i].flags & AISLE_WAYPOINT_GOAL) == 0) {
+        i++;
+    }
+    return n > 1U ? (aisle_place){i, 1.0} : (aisle_place){0U, 0.0};
+}
+
+// The place of `pose` on a path, no farther than the next goal.
+static aisle_place find(const aisle_drive_path *path, double ahead, aisle_pose2 pose, aisle_off *off) {
+    const aisle_place found =
+        aisle_motion_project(path->msg->waypoints, count_of(path), path->at, BACK, ahead, pose, off);
+    const aisle_place goal = next_goal(path);
+    return is_beyond(found, goal) ? goal : found;
+}
+
+void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose) {
+    const aisle_pose2 here = {pose->x, pose->y, pose->theta};
+    const double since = aisle_clamp((double)(pose->utime - self->at_us) * 1e-6, 0.0, 1.0);
+    const double ahead = AHEAD + since * vehicle->v_max;
+    AISLE_ASSERT(self->stage == AISLE_DRIVE_IDLE);
+    self->v = aisle_vec2_length(aisle_vec2_of((double)pose->vx, (double)pose->vy));
+    self->is_resting = self->v < RESTING && fabs((double)pose->omega) < RESTING;
+    self->at_us = pose->utime;
+    if (!self->has_plan) {
+        return;
+    }
+    self->plan.at = find(&self->plan, ahead, here, &self->off);
+    if (self->has_out) {
+        self->out.at = find(&self->out, ahead, here, &self->off);
+    }
+    self->is_off = self->off.lateral > aisle_max(vehicle->margin, AISLE_DRIVE_OFF) ||
+                   fabs(self->off.heading) > AISLE_DRIVE_OFF_HEADING;
+}
+
+// The next goal is told no more, and the vehicle is not before it.
+static void pass(aisle_drive_path *path) {
+    const aisle_place goal = next_goal(path);
+    path->msg->waypoints[goal.piece].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
+    path->dwell[goal.piece] = 0.0F;
+    path->at = is_beyond(goal, path->at) ? goal : path->at;
+}
+
+void aisle_drive_pass_goal(aisle_drive *self) {
+    AISLE_ASSERT(self->passed < self->num_goals && self->stage == AISLE_DRIVE_IDLE);
+    pass(&self->plan);
+    if (self->has_out) {
+        pass(&self->out);
+    }
+    self->passed++;
+    self->plan_serial++; // its goals are others now
+}
+
+// Where it is at now_us if it follows what is out, on both paths.
+static void move_on(aisle_drive *self, int64_t now_us) {
+    const double age = aisle_clamp((double)(now_us - self->at_us) * 1e-6, 0.0, AGE_MAX);
+    const aisle_drive_path *out = &self->out;
+    const uint32_t n = count_of(out);
+    if (!self->has_out || self->is_resting || n < 2U || !(age > 0.0)) {
+        return;
+    }
+    const aisle_vehicle *vehicle = self->world.vehicle;
+    const aisle_waypoint_msg *w = out->msg->waypoints;
+    const double t = aisle_motion_time(vehicle, w, n, out->dwell, out->at) + age;
+    const aisle_place at = aisle_motion_at_time(vehicle, w, n, out->dwell, t), goal = next_goal(out);
+    self->out.at = is_beyond(at, goal) ? goal : at;
+    self->at_us = now_us;
+    self->plan.at = find(&self->plan, AHEAD + age * vehicle->v_max, aisle_motion_pose(w, n, self->out.at), NULL);
+}
+
+aisle_place aisle_drive_rest(const aisle_drive *self, const aisle_vehicle *vehicle, double delay) {
+    const aisle_drive_path *out = &self->out;
+    AISLE_ASSERT(self->has_plan);
+    if (!aisle_drive_moves(self)) {
+        return self->plan.at;
+    }
+    const uint32_t n = count_of(out);
+    const aisle_waypoint_msg *w = out->msg->waypoints;
+    const aisle_place rest =
+        aisle_motion_rest(vehicle, w, n, out->dwell, out->at, self->v, vehicle->reaction_time + delay);
+    const double way = aisle_motion_length_to(w, n, rest) - aisle_motion_length_to(w, n, out->at);
+    aisle_place place = find(&self->plan, way + BACK, aisle_motion_pose(w, n, rest), NULL);
+    if (place.piece > 0U && (self->plan.msg->waypoints[place.piece - 1U].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0) {
+        place.u = 1.0; // a turn is left at its end
+    }
+    return place;
+}
+
+// ---- another way from a place on
+
+// Shortens cut[n], a path from `at` on, so that it ends at `to`, a place of the path w[of] it was cut from.
+static uint32_t end_at(const aisle_waypoint_msg *w, uint32_t of, aisle_place at, aisle_place to,
+                       aisle_waypoint_msg *cut, uint32_t n) {
+    uint32_t end = n - (of - to.piece); // what waypoint to.piece is in cut: the last ones are the same
+    if (!(to.u < 1.0)) {
+        return end + 1U;
+    }
+    const double length = aisle_motion_length_to(w, of, to) - aisle_motion_length_to(w, of, at);
+    while (to.piece == at.piece && end > 0U && (double)cut[end - 1U].s > length - SNAP) {
+        end--;
+    }
+    if (end > 0U) {
+        const aisle_pose2 pose = aisle_motion_pose(w, of, to);
+        cut[end].x = pose.x;
+        cut[end].y = pose.y;
+        cut[end].theta = pose.theta;
+        cut[end].flags &= AISLE_WAYPOINT_REVERSE;
+    }
+    return end + 1U;
+}
+
+// Joins tail to the `head` waypoints of path, which end where it begins: how it is left there is the tail's.
+static bool join(aisle_path_msg *path, uint32_t head, const aisle_waypoint_msg *tail, uint32_t n) {
+    aisle_waypoint_msg *last = &path->waypoints[head - 1U];
+    const double turn = aisle_angle_difference(last->theta, tail[0].theta);
+    const double apart = aisle_vec2_distance(aisle_vec2_of(last->x, last->y), aisle_vec2_of(tail[0].x, tail[0].y));
+    if (head + n - 1U > AISLE_PATH_MAX_WAYPOINTS || fabs(turn) > AISLE_CURVE_HEADING_TOLERANCE || apart > JOINT) {
+        return false;
+    }
+    last->flags |= (int16_t)(tail[0].flags & (AISLE_WAYPOINT_TURN_IN_PLACE | AISLE_WAYPOINT_GOAL));
+    last->goal_id = (tail[0].flags & AISLE_WAYPOINT_GOAL) != 0 ? tail[0].goal_id : last->goal_id;
+    memcpy(last + 1, tail + 1, (n - 1U) * sizeof tail[0]);
+    path->num_waypoints = (int16_t)(head + n - 1U);
+    return true;
+}
+
+bool aisle_drive_splice(aisle_drive *self, const aisle_drive_world *world, aisle_place from,
+                        const aisle_waypoint_msg *tail, uint32_t n, const aisle_goal_msg *goals, uint32_t num_goals) {
+    const aisle_drive_path *plan = &self->plan;
+    aisle_path_msg *joined = self->next.msg;
+    if (is_beyond(aisle_drive_rest(self, world->vehicle, AISLE_DRIVE_LATENCY), from)) {
+        return false;
+    }
+    const uint32_t cut = aisle_motion_cut(world->vehicle, plan->msg->waypoints, count_of(plan), plan->dwell, plan->at,
+                                          joined->waypoints, AISLE_PATH_MAX_WAYPOINTS);
+    if (cut == 0U) {
+        return false;
+    }
+    const uint32_t head = end_at(plan->msg->waypoints, count_of(plan), plan->at, from, joined->waypoints, cut);
+    if (!join(joined, head, tail, n)) {
+        return false;
+    }
+    self->plan.msg->length_bound = 0.0F; // it was one from elsewhere
+    take_plan(self, joined->waypoints, (uint32_t)(uint16_t)joined->num_waypoints, goals, num_goals);
+    return true;
+}
+
+// ---- the cycle
+
+bool aisle_drive_is_stopping(const aisle_drive *self) {
+    return self->has_out && self->out.msg->status == AISLE_PATH_STOP;
+}
+
+int64_t aisle_drive_lease_until(const aisle_drive *self) {
+    AISLE_ASSERT(self->has_out);
+    return aisle_drive_is_stopping(self) ? self->cycle_us + AISLE_LEASE_US : self->out.moving.until_us;
+}
+
+void aisle_drive_begin(aisle_drive *self, const aisle_drive_world *world, int64_t now_us, const aisle_path_msg *head,
+                       const aisle_refusal *stop) {
+    AISLE_ASSERT(self->has_plan && self->stage == AISLE_DRIVE_IDLE);
+    self->world = *world;
+    self->cycle_us = now_us;
+    memcpy(self->head, head, offsetof(aisle_path_msg, waypoints));
+    self->stops = stop != NULL;
+    if (stop != NULL) {
+        self->why = *stop;
+    }
+    self->brakes = false;
+    self->lease = lease_most();
+    self->stage = AISLE_DRIVE_CHECK;
+    move_on(self, now_us);
+}
+
+static aisle_status end(aisle_drive *self, aisle_drive_verdict what, aisle_drive_verdict *verdict) {
+    self->stage = AISLE_DRIVE_IDLE;
+    *verdict = what;
+    return AISLE_OK;
+}
+
+// What is next goes out.
+static aisle_status change(aisle_drive *self, aisle_drive_verdict *verdict) {
+    const aisle_drive_path swap = self->out;
+    self->out = self->next;
+    self->next = swap;
+    self->has_out = true;
+    self->is_fresh = self->must_change = false;
+    self->changed_us = self->cycle_us;
+    return end(self, AISLE_DRIVE_CHANGE, verdict);
+}
+
+static void begin_moving(aisle_drive *self, const aisle_drive_path *path, aisle_drive_stage stage) {
+    const aisle_moving_request request = {.vehicle = self->world.vehicle,
+                                          .movers = self->world.movers,
+                                          .bytes = path->bytes,
+                                          .size = path->size,
+                                          .path = path->msg,
+                                          .at_piece = path->at.piece,
+                                          .at_u = path->at.u,
+                                          .v = self->v,
+                                          .rest = self->rest,
+                                          .goals = self->goals + path->passed,
+                                          .num_goals = self->num_goals - path->passed,
+                                          .now_us = self->cycle_us,
+                                          .lease = self->lease};
+    aisle_verify_moving_start(&self->moving, &request);
+    self->stage = stage;
+}
+
+// A level that what is out has, for those who ask for a faster one.
+static uint32_t present_level(const aisle_drive *self) {
+    return self->has_out && aisle_drive_moves(self) && !aisle_drive_is_stopping(self) ? self->out.level
+                                                                                      : AISLE_PACE_STOP;
+}
+
+// Of what is out, from the vehicle's place to where it could be brought to rest.
+static void take_base(aisle_drive *self) {
+    const aisle_drive_path *out = &self->out;
+    const aisle_vehicle *vehicle = self->world.vehicle;
+    const uint32_t n = count_of(out);
+    const aisle_waypoint_msg *w = out->msg->waypoints;
+    const aisle_place rest =
+        aisle_motion_rest(vehicle, w, n, out->dwell, out->at, self->v, vehicle->reaction_time + AISLE_DRIVE_LATENCY);
+    const double reach = aisle_motion_length_to(w, n, rest) - aisle_motion_length_to(w, n, out->at);
+    const bool in_turn = n > 1U && (w[out->at.piece - 1U].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
+    self->base = (aisle_verify_base){.w = w,
+                                     .n = n,
+                                     .dwell = out->dwell,
+                                     .piece = out->at.piece,
+                                     .u = out->at.u,
+                                     .reach = aisle_max(reach, 0.0),
+                                     .turn = in_turn && out->at.u > 0.0 && out->at.u < 1.0};
+}
+
+// Looks for speeds from `level` on.
+static void begin_pace(aisle_drive *self, uint32_t level) {
+    const aisle_drive_path *plan = &self->plan;
+    const bool moves = aisle_drive_moves(self);
+    if (moves) {
+        take_base(self);
+    }
+    const aisle_pace_request request = {.layout = self->world.layout,
+                                        .vehicle = self->world.vehicle,
+                                        .movers = self->world.movers,
+                                        .w = plan->msg->waypoints,
+                                        .n = count_of(plan),
+                                        .dwell = plan->dwell,
+                                        .at = plan->at,
+                                        .v = moves ? self->v : 0.0,
+                                        .base = moves ? &self->base : NULL,
+                                        .now_us = self->cycle_us,
+                                        .lease = moves ? PACE_LEASE : START_LEASE,
+                                        .first = level,
+                                        .current = present_level(self)};
+    self->level = level;
+    aisle_pace_start(&self->pace, &request, self->next.msg);
+    self->stage = AISLE_DRIVE_PACE;
+}
+
+static aisle_status step_check(aisle_drive *self, aisle_drive_verdict *verdict) {
+    if (self->stops && (!aisle_drive_moves(self) || aisle_drive_is_stopping(self))) {
+        return end(self, AISLE_DRIVE_KEEP, verdict); // it stands, or brakes already
+    }
+    if (self->stops) {
+        self->brakes = true;
+        begin_pace(self, AISLE_PACE_STOP);
+    } else if (self->is_fresh) {
+        begin_moving(self, &self->next, AISLE_DRIVE_FRESH);
+    } else if (self->must_change || !self->has_out || aisle_drive_is_stopping(self)) {
+        begin_pace(self, 0);
+    } else {
+        begin_moving(self, &self->out, AISLE_DRIVE_CHECK_MOVING);
+    }
+    return AISLE_BUSY;
+}
+
+// The proof of a path for a lease; where it fails for half of it, and so on. AISLE_ERR_DATA: for none.
+static aisle_status prove_moving(aisle_drive *self, aisle_drive_path *path, uint32_t units) {
+    const aisle_status st = aisle_verify_moving_step(&self->moving, units, &self->spent, &path->moving);
+    if (st != AISLE_ERR_DATA) {
+        return st;
+    }
+    self->why = (aisle_refusal){AISLE_STATUS_YIELDING, self->moving.blocker, 0.0F};
+    self->lease *= 0.5;
+    if (self->lease < LEASE_LEAST) {
+        return AISLE_ERR_DATA;
+    }
+    begin_moving(self, path, self->stage);
+    return AISLE_BUSY;
+}
+
+static aisle_status step_fresh(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    const aisle_status st = prove_moving(self, &self->next, units);
+    if (st == AISLE_OK) {
+        self->why = (aisle_refusal){0, 0, 0.0F};
+        return change(self, verdict);
+    }
+    if (st == AISLE_ERR_DATA) {
+        self->is_fresh = false;
+        begin_pace(self, 1);
+    }
+    return AISLE_BUSY;
+}
+
+// What is out may go on. Would a faster one do?
+static aisle_status kept(aisle_drive *self, aisle_drive_verdict *verdict) {
+    if (self->out.level > 0U && self->cycle_us - self->changed_us >= AISLE_DRIVE_SPEED_UP_US) {
+        begin_pace(self, 0);
+        return AISLE_BUSY;
+    }
+    return end(self, AISLE_DRIVE_KEEP, verdict);
+}
+
+static aisle_status step_check_moving(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    const aisle_refusal before = self->why;
+    const aisle_status st = prove_moving(self, &self->out, units);
+    if (st == AISLE_OK) {
+        self->why = before;
+        return kept(self, verdict);
+    }
+    if (st == AISLE_ERR_DATA) {
+        begin_pace(self, self->out.level);
+    }
+    return AISLE_BUSY;
+}
+
+// ---- a path of other speeds
+
+// Is what is next the plan as a whole?
+static bool begins_at_start(const aisle_drive *self) {
+    return self->next.level == 0U && self->plan.at.piece <= 1U && !(self->plan.at.u > 0.0) && !aisle_drive_moves(self);
+}
+
+static void fill_next(aisle_drive *self) {
+    aisle_drive_path *next = &self->next;
+    const aisle_path_msg *plan = self->plan.msg;
+    aisle_path_msg *msg = next->msg;
+    const aisle_path_msg *head = self->head;
+    msg->utime = head->utime;
+    msg->boot_id = head->boot_id;
+    msg->path_revision = head->path_revision;
+    msg->query_id = 0;
+    msg->goal_list_id = head->goal_list_id;
+    msg->goal_list_revision = head->goal_list_revision;
+    msg->map_id = head->map_id;
+    msg->map_revision = head->map_revision;
+    msg->vehicle_revision = head->vehicle_revision;
+    msg->pose_utime = head->pose_utime;
+    msg->obstacles_utime = head->obstacles_utime;
+    msg->t0_utime = head->t0_utime;
+    msg->valid_until_utime = head->valid_until_utime;
+    msg->status = (int8_t)(self->brakes                     ? AISLE_PATH_STOP
+                           : next->level == AISLE_PACE_STOP ? AISLE_PATH_PARTIAL
+                                                            : AISLE_PATH_OK);
+    msg->cause = self->why.cause;
+    msg->cause_id = self->why.id;
+    msg->cause_value = self->why.value;
+    msg->planner = plan->planner;
+    msg->cached = plan->cached;
+    msg->work_units = plan->work_units;
+    if (begins_at_start(self)) {
+        msg->length_bound = plan->length_bound;
+        msg->risk = plan->risk; // by closer looks than the pieces' clearances
+    } else {
+        msg->length_bound = 0.0F; // it was one from elsewhere
+    }
+    msg->clearance_moving_min = 0.0F;
+    msg->planning_time = 0.0F;
+    next->at = first_place(count_of(next));
+    next->passed = self->passed;
+    put_dwell(self, next);
+}
+
+static bool encode(aisle_drive *self) {
+    aisle_drive_path *next = &self->next;
+    return aisle_path_encode(next->msg, next->bytes, AISLE_ROUTE_BYTES, &next->size) == AISLE_OK;
+}
+
+static void begin_static(aisle_drive *self) {
+    const aisle_drive_path *next = &self->next;
+    const aisle_verify_request request = {
+        .layout = self->world.layout,
+        .vehicle = self->world.vehicle,
+        .bytes = next->bytes,
+        .size = next->size,
+        .start = aisle_motion_pose(self->plan.msg->waypoints, count_of(&self->plan), self->plan.at),
+        .v_start = (double)next->msg->waypoints[0].v,
+        .base = aisle_drive_moves(self) ? &self->base : NULL,
+        .goals = self->goals + self->passed,
+        .num_goals = self->num_goals - self->passed};
+    aisle_verify_start(&self->verify, &request, self->decoded);
+    self->stage = AISLE_DRIVE_STATIC;
+}
+
+// Nothing slower is left: braking if it moves, else it stands and waits.
+static aisle_status give_up(aisle_drive *self, aisle_drive_verdict *verdict) {
+    if (!aisle_drive_moves(self) || self->brakes) {
+        self->is_fresh = false;
+        return end(self, AISLE_DRIVE_LOST, verdict);
+    }
+    self->brakes = true;
+    begin_pace(self, AISLE_PACE_STOP);
+    return AISLE_BUSY;
+}
+
+// Is what pace found worth a change, what is out being fit to go on?
+static bool is_no_better(const aisle_drive *self) {
+    return self->has_out && !self->must_change && !aisle_drive_is_stopping(self) && aisle_drive_moves(self) &&
+           self->level < self->out.level && self->next.level >= self->out.level;
+}
+
+static aisle_status step_pace(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    const aisle_status st = aisle_pace_step(&self->pace, units, &self->spent);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    if (st == AISLE_ERR_CAPACITY) {
+        self->is_unfit = true;
+        return give_up(self, verdict);
+    }
+    self->next.level = self->pace.level;
+    if (!self->brakes && self->pace.limit.is_known) {
+        self->why = (aisle_refusal){AISLE_STATUS_YIELDING, self->pace.limit.id, 0.0F};
+    } else if (self->next.level == 0U) {
+        self->why = (aisle_refusal){0, 0, 0.0F};
+    }
+    if (is_no_better(self)) {
+        return end(self, AISLE_DRIVE_KEEP, verdict);
+    }
+    if (st == AISLE_PARTIAL && !aisle_drive_moves(self)) { // it would stay where it is
+        return give_up(self, verdict);
+    }
+    fill_next(self);
+    if (!encode(self)) {
+        self->is_unfit = true;
+        return give_up(self, verdict);
+    }
+    if (self->brakes) {
+        begin_static(self);
+    } else {
+        self->lease = lease_most();
+        begin_moving(self, &self->next, AISLE_DRIVE_MOVING);
+    }
+    return AISLE_BUSY;
+}
+
+static aisle_status step_moving(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    const aisle_status st = prove_moving(self, &self->next, units);
+    if (st == AISLE_OK) {
+        begin_static(self);
+    } else if (st == AISLE_ERR_DATA && self->next.level < AISLE_PACE_STOP) {
+        begin_pace(self, self->next.level + 1U);
+    } else if (st == AISLE_ERR_DATA) {
+        return give_up(self, verdict);
+    }
+    return AISLE_BUSY;
+}
+
+static aisle_status step_static(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    const aisle_status st = aisle_verify_step(&self->verify, units, &self->spent, &self->next.stamp);
+    if (st == AISLE_OK) {
+        return change(self, verdict);
+    }
+    if (st == AISLE_ERR_DATA) {
+        self->is_unfit = true;
+        self->why = (aisle_refusal){AISLE_STATUS_VERIFY_FAILED, self->verify.fault_id, (float)self->verify.fault};
+        return give_up(self, verdict);
+    }
+    return AISLE_BUSY;
+}
+
+static aisle_status step_stage(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    switch (self->stage) {
+    case AISLE_DRIVE_CHECK:
+        return step_check(self, verdict);
+    case AISLE_DRIVE_FRESH:
+        return step_fresh(self, units, verdict);
+    case AISLE_DRIVE_CHECK_MOVING:
+        return step_check_moving(self, units, verdict);
+    case AISLE_DRIVE_PACE:
+        return step_pace(self, units, verdict);
+    case AISLE_DRIVE_MOVING:
+        return step_moving(self, units, verdict);
+    case AISLE_DRIVE_STATIC:
+        return step_static(self, units, verdict);
+    case AISLE_DRIVE_IDLE:
+        break;
+    }
+    return AISLE_OK;
+}
+
+aisle_status aisle_drive_step(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
+    const uint32_t from = self->spent;
+    aisle_status st = AISLE_BUSY;
+    AISLE_ASSERT(self->stage != AISLE_DRIVE_IDLE);
+    while (st == AISLE_BUSY && self->spent - from < units) {
+        st = step_stage(self, units - (self->spent - from), verdict);
+    }
+    return st;
+}

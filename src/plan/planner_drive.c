@@ -1,0 +1,223 @@
+#include "plan/planner_state.h"
+
+#include "base/check.h"
+
+#include <string.h>
+
+#define PLANNING_DELAY 0.2     // s, that planning under way may take at first
+#define PLANNING_DELAY_MAX 3.2 // s
+#define TRIES_MAX 4U           // at leaving the path under way, before the vehicle is stopped for it
+#define LOOK_ROUND_US 500000   // between two looks whether going round is worth it
+#define DELAY_WORTH 2.0        // s, of waiting, before going round is looked for
+#define GAIN_WORTH 1.0         // s, that going round must save
+
+// ---- where plans begin
+
+void aisle_planner_leave_from(aisle_planner *self, aisle_request *request) {
+    aisle_leaving *leaving = &self->leaving;
+    const aisle_drive *drive = &self->drive;
+    leaving->under_way = drive->has_plan && aisle_drive_moves(drive) && !drive->is_off;
+    if (!leaving->under_way) {
+        return;
+    }
+    const aisle_drive_path *plan = &drive->plan;
+    leaving->from = aisle_drive_rest(drive, &self->vehicle, AISLE_DRIVE_LATENCY + leaving->delay);
+    leaving->serial = drive->plan_serial;
+    const aisle_pose2 pose =
+        aisle_motion_pose(plan->msg->waypoints, (uint32_t)(uint16_t)plan->msg->num_waypoints, leaving->from);
+    request->start = (aisle_goal_msg){.x = pose.x, .y = pose.y, .theta = pose.theta};
+}
+
+// Planned once more, from farther ahead; at last from where the vehicle stands.
+static void try_again(aisle_planner *self) {
+    aisle_leaving *leaving = &self->leaving;
+    if (++leaving->tries > TRIES_MAX) {
+        leaving->tries = 0;
+        self->failed = (aisle_refusal){AISLE_STATUS_BUDGET, 0, 0.0F};
+        self->cycle_wanted = true;
+        return;
+    }
+    leaving->delay = leaving->delay > 0.0 ? aisle_min(2.0 * leaving->delay, PLANNING_DELAY_MAX) : PLANNING_DELAY;
+    self->mission.replan = !leaving->round;
+}
+
+static bool take_under_way(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
+    const aisle_leaving *leaving = &self->leaving;
+    aisle_drive *drive = &self->drive;
+    const aisle_drive_world world = {self->layout, &self->vehicle, &self->movers};
+    if (!drive->has_plan || drive->plan_serial != leaving->serial) {
+        return false;
+    }
+    aisle_path_msg *path = self->route->decoded; // the verifier's, which is done
+    aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, path, NULL);
+    AISLE_ASSERT(st == AISLE_OK);
+    return aisle_drive_splice(drive, &world, leaving->from, path->waypoints, (uint32_t)(uint16_t)path->num_waypoints,
+                              request->goals, (uint32_t)(uint16_t)request->num_goals);
+}
+
+// Goals of it that were reached meanwhile are behind.
+static void pass_goals(aisle_planner *self, uint32_t passed) {
+    for (; passed > 0U; passed--) {
+        aisle_drive_pass_goal(&self->drive);
+    }
+}
+
+void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
+    uint32_t passed = 0;
+    if (!self->leaving.under_way && aisle_drive_moves(&self->drive)) { // a better path from where it has left
+        return;
+    }
+    if (!aisle_mission_take_order(&self->mission, request, &passed) ||
+        (self->leaving.under_way && !take_under_way(self, request, proof))) {
+        try_again(self);
+        return;
+    }
+    if (!self->leaving.under_way) {
+        aisle_drive_adopt(&self->drive, proof, request->goals, (uint32_t)(uint16_t)request->num_goals);
+    }
+    pass_goals(self, passed);
+    self->leaving.delay = 0.0;
+    self->leaving.tries = 0;
+    self->failed.cause = 0;
+    self->cycle_wanted = true;
+}
+
+void aisle_planner_take_failure(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
+                                const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units) {
+    if (self->leaving.round) { // it waits on
+        return;
+    }
+    if (aisle_drive_moves(&self->drive)) {
+        self->failed = *why;
+        self->cycle_wanted = true;
+        return;
+    }
+    aisle_drive_drop(&self->drive);
+    aisle_planner_refuse(self, request, why, told, told_count, work_units);
+}
+
+// ---- the cycle
+
+// Must the vehicle be stopped, or not leave?
+static bool must_stop(const aisle_planner *self, aisle_refusal *why) {
+    *why = (aisle_refusal){0, 0, 0.0F};
+    why->cause = aisle_planner_lease_hindrance(self, self->now_us, &why->id);
+    if (why->cause != 0) {
+        return true;
+    }
+    if (self->drive.is_off) {
+        *why = (aisle_refusal){AISLE_STATUS_OFF_PATH, self->pose.seq, (float)self->drive.off.lateral};
+        return true;
+    }
+    if (self->drive.is_unfit) {
+        *why = (aisle_refusal){AISLE_STATUS_MAP_MISMATCH, aisle_layout_map_revision(self->layout), 0.0F};
+        return true;
+    }
+    if (self->failed.cause != 0) {
+        *why = self->failed;
+        return true;
+    }
+    return self->held || !self->mission.wanted;
+}
+
+// When what the vehicle is driven by turns stale.
+static int64_t stale_at(const aisle_planner *self) {
+    const int64_t pose = self->pose_at_us + (int64_t)(self->vehicle.pose_timeout * 1e6) + 1;
+    const int64_t movers = aisle_movers_stale_at(&self->movers, self->vehicle.obstacles_timeout);
+    return movers < pose ? movers + 1 : pose;
+}
+
+int64_t aisle_planner_cycle_deadline(const aisle_planner *self) {
+    const aisle_drive *drive = &self->drive;
+    aisle_refusal why;
+    if (!drive->has_plan || !drive->has_out) {
+        return INT64_MAX;
+    }
+    if (must_stop(self, &why)) { // at once, if that is still to be done
+        return aisle_drive_moves(drive) && !aisle_drive_is_stopping(drive) ? self->now_us : INT64_MAX;
+    }
+    const int64_t stale = aisle_drive_moves(drive) ? stale_at(self) : INT64_MAX;
+    return self->lease_due_us < stale ? self->lease_due_us : stale;
+}
+
+bool aisle_planner_cycle_is_due(const aisle_planner *self) {
+    return self->drive.stage != AISLE_DRIVE_IDLE ||
+           (self->drive.has_plan && (self->cycle_wanted || self->now_us >= aisle_planner_cycle_deadline(self)));
+}
+
+static void begin_cycle(aisle_planner *self) {
+    const aisle_drive_world world = {self->layout, &self->vehicle, &self->movers};
+    aisle_refusal why;
+    const bool stops = must_stop(self, &why);
+    self->cycle_wanted = false;
+    aisle_planner_fill_head(self, &self->mission.request);
+    aisle_path_msg *head = self->head;
+    head->path_revision = self->path_revision + 1;
+    head->pose_utime = self->pose.utime;
+    head->valid_until_utime = self->now_us + AISLE_LEASE_US;
+    aisle_drive_begin(&self->drive, &world, self->now_us, head, stops ? &why : NULL);
+}
+
+// A stopped vehicle, at rest: what is to follow.
+static void after_stop(aisle_planner *self) {
+    aisle_drive *drive = &self->drive;
+    if (aisle_drive_moves(drive)) {
+        return;
+    }
+    if (!self->mission.wanted) {
+        aisle_planner_revoke(self, 0, 0);
+    } else if (drive->is_off || drive->is_unfit || self->failed.cause != 0) {
+        aisle_planner_revoke(self, drive->why.cause, drive->why.id);
+        self->failed.cause = 0;
+        self->leaving.round = false;
+        self->mission.replan = true;
+    }
+}
+
+// Is waiting for what slows the vehicle dear enough to look for a way round?
+static void weigh_going_round(aisle_planner *self) {
+    aisle_drive *drive = &self->drive;
+    if (drive->why.cause != AISLE_STATUS_YIELDING || aisle_planner_is_busy(self) ||
+        self->now_us - self->looked_us < LOOK_ROUND_US) {
+        return;
+    }
+    self->looked_us = self->now_us;
+}
+
+static void tell_verdict(aisle_planner *self, aisle_drive_verdict verdict) {
+    aisle_drive *drive = &self->drive;
+    switch (verdict) {
+    case AISLE_DRIVE_CHANGE:
+        self->path_revision = drive->out.msg->path_revision;
+        self->counters[AISLE_COUNTER_PATHS]++;
+        aisle_planner_send(self);
+        break;
+    case AISLE_DRIVE_KEEP:
+        if (!drive->stops && self->now_us >= self->lease_due_us) {
+            aisle_planner_send(self);
+        }
+        break;
+    case AISLE_DRIVE_LOST:
+        aisle_planner_withdraw(self, &drive->why);
+        break;
+    }
+}
+
+void aisle_planner_step_cycle(aisle_planner *self, uint32_t units) {
+    aisle_drive *drive = &self->drive;
+    aisle_drive_verdict verdict;
+    if (drive->stage == AISLE_DRIVE_IDLE) {
+        begin_cycle(self);
+    }
+    if (aisle_drive_step(drive, units, &verdict) != AISLE_OK) {
+        return;
+    }
+    self->counters[AISLE_COUNTER_WORK_UNITS] += drive->spent;
+    drive->spent = 0;
+    tell_verdict(self, verdict);
+    if (drive->stops || drive->is_unfit) {
+        after_stop(self);
+    } else {
+        weigh_going_round(self);
+    }
+}

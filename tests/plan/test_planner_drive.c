@@ -1,0 +1,390 @@
+// A vehicle that is driven through the public door: it follows what comes out, the test moves it and everything else.
+#include "aisle/planner.h"
+#include "robot/motion.h"
+#include "robot/vehicle.h"
+
+#include "door.h"
+
+#include <stdlib.h>
+
+#define TICK_US 50000
+
+static aisle_pose_msg here;
+static aisle_obstacles_msg seen;
+static aisle_vehicle limits;
+
+// The vehicle as it follows the newest path: by its times, from where the path begins, as long as its lease stands.
+typedef struct follower {
+    aisle_path_msg path;
+    double t; // s on it
+    int32_t revision;
+    bool drives; // there is one
+    double s;    // m driven
+} follower;
+static follower agv;
+
+static void setup_hall(double w, double h) {
+    door_config = (aisle_config){.limits = {.cells = 1048576U, .requests = 4U}, .boot_id = 77, .has_vehicle = true};
+    hall_rectangle(1.0, 0.7, 0.1F);
+    hall_begin(w, h);
+    aisle_vehicle_msg msg = door_config.vehicle;
+    aisle_refusal why;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_vehicle_from_msg(&msg, &limits, &why));
+}
+
+static void open_hall(double x, double y, double theta) {
+    door_open(0);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_layout(1));
+    door_settle();
+    memset(&agv, 0, sizeof agv);
+    memset(&seen, 0, sizeof seen);
+    here = door_pose(x, y, theta);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+}
+
+static aisle_status_msg status_now(void) {
+    aisle_status_msg status;
+    aisle_planner_status(door, door_now, &status);
+    return status;
+}
+
+static void take_path(void) {
+    if (door_paths == 0) {
+        return;
+    }
+    if (door_path.path_revision != agv.revision || door_path.status == AISLE_PATH_NONE) {
+        agv.path = door_path;
+        agv.revision = door_path.path_revision;
+        agv.drives = door_path.status != AISLE_PATH_NONE;
+        agv.t = 0.0;
+    }
+    agv.path.valid_until_utime = door_path.valid_until_utime;
+}
+
+static void move(double dt) {
+    const uint32_t n = (uint32_t)agv.path.num_waypoints;
+    here.vx = here.omega = 0.0F;
+    if (!agv.drives || n < 2U || door_now > agv.path.valid_until_utime) {
+        return;
+    }
+    agv.t += dt;
+    const aisle_place at = aisle_motion_at_time(&limits, agv.path.waypoints, n, NULL, agv.t);
+    const aisle_pose2 pose = aisle_motion_pose(agv.path.waypoints, n, at);
+    here.vx = (float)aisle_motion_speed(&limits, agv.path.waypoints, n, NULL, at);
+    here.omega = (float)((pose.theta - here.theta) / dt);
+    here.x = pose.x;
+    here.y = pose.y;
+    here.theta = pose.theta;
+}
+
+// One tick: the vehicle moves, tells its pose, and what is seen is told if anything was.
+static void tick(void) {
+    door_now += TICK_US;
+    take_path();
+    move(1e-6 * TICK_US);
+    here.utime = door_now;
+    here.seq++;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+    door_settle();
+    if (seen.seq > 0) {
+        seen.utime = door_now;
+        seen.seq++;
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_OBSTACLES, &seen));
+        door_settle();
+    }
+    take_path();
+}
+
+static bool has_arrived(double x, double y) {
+    return hypot(here.x - x, here.y - y) < 0.05 && here.vx < 0.01F && status_now().state == AISLE_STATUS_IDLE;
+}
+
+// Ticks until it has arrived; how many it took, -1: not in time.
+static int drive_to(double x, double y, int ticks) {
+    for (int i = 0; i < ticks; i++) {
+        tick();
+        if (getenv("TRACE") != NULL) {
+            const aisle_status_msg s = status_now();
+            printf("%d: %.2f %.2f %.2f v %.2f rev %d status %d n %d cause %d state %d/%d lease %.2f\n", i, here.x,
+                   here.y, here.theta, (double)here.vx, agv.revision, agv.path.status, agv.path.num_waypoints,
+                   agv.path.cause, s.state, s.cause, 1e-6 * (double)(agv.path.valid_until_utime - door_now));
+        }
+        if (has_arrived(x, y)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void go(int32_t revision, double x, double y) {
+    const aisle_goal_list_msg goals = door_goals(revision, x, y);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+    door_settle();
+}
+
+static void see(int32_t id, double x, double y, double vx, double vy) {
+    int16_t i = 0;
+    while (i < seen.num_obstacles && seen.obstacles[i].id != id) {
+        i++;
+    }
+    seen.num_obstacles = (int16_t)(i < seen.num_obstacles ? seen.num_obstacles : i + 1);
+    seen.obstacles[i] = (aisle_obstacle_msg){
+        .id = id, .kind = AISLE_OBSTACLE_PERSON, .x = x, .y = y, .vx = (float)vx, .vy = (float)vy, .radius = 0.3F};
+    seen.seq++;
+}
+
+void setUp(void) {
+    setup_hall(20.0, 10.0);
+}
+void tearDown(void) {}
+
+static void test_a_vehicle_alone_follows_one_path_to_its_goal(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+    TEST_ASSERT_EQUAL_INT32(1, agv.revision);
+}
+
+static void test_a_person_far_away_changes_nothing(void) {
+    setup_hall(40.0, 40.0);
+    open_hall(2.0, 5.0, 0.0);
+    see(7, 20.0, 35.0, 0.0, 0.0);
+    go(1, 18.0, 5.0);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+    TEST_ASSERT_EQUAL_INT32(1, agv.revision);
+}
+
+static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
+    setup_hall(20.0, 3.0);
+    open_hall(2.0, 1.5, 0.0);
+    see(7, 12.0, 1.5, 0.0, 0.0);
+    go(1, 18.0, 1.5);
+    TEST_ASSERT_EQUAL_INT(-1, drive_to(18.0, 1.5, 600));
+    TEST_ASSERT_TRUE(here.x > 8.0 && here.x < 11.0);
+    TEST_ASSERT_TRUE(here.vx < 0.01F);
+    TEST_ASSERT_EQUAL(AISLE_STATUS_BLOCKED, status_now().state);
+    TEST_ASSERT_EQUAL_INT32(7, status_now().cause_id);
+    seen.num_obstacles = 0;
+    TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 600) > 0);
+}
+
+// ---- stops and what follows them
+
+static void ticks(int n) {
+    for (int i = 0; i < n; i++) {
+        tick();
+    }
+}
+
+static void command(int8_t what, int32_t arg) {
+    static int32_t id;
+    const aisle_command_msg msg = {.utime = door_now, .command_id = ++id, .command = what, .arg = arg};
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_COMMAND, &msg));
+    door_settle();
+    take_path();
+}
+
+// The newest path brakes within what d_max and the reaction time allow, along the one before.
+static void is_braking(int16_t cause) {
+    TEST_ASSERT_EQUAL(AISLE_PATH_STOP, agv.path.status);
+    TEST_ASSERT_EQUAL_INT16(cause, agv.path.cause);
+    const double v = (double)agv.path.waypoints[0].v;
+    const double way = v * (limits.reaction_time + 0.2) + v * v / (2.0 * limits.d_max);
+    TEST_ASSERT_TRUE((double)agv.path.length <= way + 0.05);
+}
+
+static void rests_within(int n) {
+    int i = 0;
+    while (i < n && here.vx > 0.001F) {
+        tick();
+        i++;
+    }
+    TEST_ASSERT_LESS_THAN_INT(n, i);
+}
+
+static void test_hold_brakes_along_the_path_and_resume_goes_on(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    TEST_ASSERT_TRUE(here.vx > 1.0F);
+    command(AISLE_COMMAND_HOLD, 0);
+    is_braking(0);
+    TEST_ASSERT_EQUAL(AISLE_STATUS_HELD, status_now().state);
+    rests_within(80);
+    const double x = here.x;
+    ticks(60);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, x, here.x);
+    command(AISLE_COMMAND_RESUME, 0);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+}
+
+static void test_cancel_brakes_along_the_path_and_then_nothing_is_out(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    command(AISLE_COMMAND_CANCEL, 0);
+    is_braking(0);
+    rests_within(80);
+    ticks(3);
+    TEST_ASSERT_EQUAL(AISLE_STATUS_IDLE, status_now().state);
+    const int before = door_paths;
+    ticks(40);
+    TEST_ASSERT_EQUAL_INT(before, door_paths);
+}
+
+static void test_a_stale_pose_brakes_the_vehicle_within_the_timeout(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    const int64_t last = door_now;
+    while (agv.path.status != AISLE_PATH_STOP && door_now < last + 1000000) {
+        door_now += 10000;
+        door_settle();
+        take_path();
+    }
+    is_braking(AISLE_STATUS_POSE_STALE);
+    TEST_ASSERT_TRUE(door_now - last <= (int64_t)(limits.pose_timeout * 1e6) + 100000);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_POSE_STALE, status_now().cause);
+}
+
+static void test_a_pose_that_comes_back_lets_the_vehicle_drive_on(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    for (int i = 0; i < 10; i++) { // it moves on unseen
+        door_now += TICK_US;
+        door_settle();
+        take_path();
+        move(1e-6 * TICK_US);
+    }
+    TEST_ASSERT_EQUAL(AISLE_PATH_STOP, agv.path.status);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+}
+
+static void test_a_vehicle_that_is_not_localized_brakes(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    here.localized = 0;
+    tick();
+    is_braking(AISLE_STATUS_NOT_LOCALIZED);
+    rests_within(80);
+    here.localized = 1;
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+}
+
+static void test_a_pose_off_the_path_brakes_and_plans_anew_from_rest(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    here.y += 0.5;
+    here.utime = door_now += TICK_US;
+    here.seq++;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+    door_settle();
+    take_path();
+    is_braking(AISLE_STATUS_OFF_PATH);
+    here.vx = here.omega = 0.0F; // it is at rest there
+    here.utime = door_now += TICK_US;
+    here.seq++;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+    door_settle();
+    take_path();
+    TEST_ASSERT_EQUAL(AISLE_PATH_OK, agv.path.status);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, here.y, agv.path.waypoints[0].y);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+}
+
+static void test_a_source_that_falls_silent_brakes_the_vehicle(void) {
+    open_hall(2.0, 5.0, 0.0);
+    see(7, 3.0, 9.5, 0.0, 0.0);
+    seen.num_obstacles = 0;
+    go(1, 18.0, 5.0);
+    ticks(100);
+    const int64_t last = door_now;
+    const int32_t seq = seen.seq;
+    seen.seq = 0; // nothing more is told
+    int n = 0;
+    while (agv.path.status != AISLE_PATH_STOP && n++ < 20) {
+        tick();
+    }
+    is_braking(AISLE_STATUS_OBSTACLES_STALE);
+    TEST_ASSERT_TRUE(door_now - last <= (int64_t)(limits.obstacles_timeout * 1e6) + 100000);
+    rests_within(80);
+    seen.seq = seq;
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+}
+
+// ---- what changes under the vehicle
+
+static void test_another_goal_under_way_bends_the_path_behind_the_base(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    const float v = here.vx;
+    go(2, 16.0, 8.0);
+    take_path();
+    TEST_ASSERT_EQUAL(AISLE_PATH_OK, agv.path.status);
+    TEST_ASSERT_EQUAL_INT32(2, agv.path.goal_list_revision);
+    TEST_ASSERT_TRUE(agv.path.num_base >= 2);
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, v, agv.path.waypoints[0].v);
+    for (int16_t i = 0; i < agv.path.num_base; i++) { // straight on as before
+        TEST_ASSERT_DOUBLE_WITHIN(1e-5, 5.0, agv.path.waypoints[i].y);
+    }
+    TEST_ASSERT_TRUE(drive_to(16.0, 8.0, 600) > 0);
+}
+
+static void test_a_wall_across_the_way_ahead_is_driven_round(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(80);
+    hall_add(13.0, 2.0, 13.5, 8.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, door_layout(2));
+    door_settle();
+    take_path();
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 900) > 0);
+    TEST_ASSERT_EQUAL_INT32(2, agv.path.map_revision);
+}
+
+static void test_a_goal_that_cannot_be_reached_any_more_stops_the_vehicle_and_says_why(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(80);
+    go(2, 25.0, 5.0);
+    take_path();
+    TEST_ASSERT_EQUAL(AISLE_PATH_STOP, agv.path.status);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_GOAL_OUTSIDE, agv.path.cause);
+    rests_within(80);
+    ticks(3);
+    TEST_ASSERT_EQUAL(AISLE_PATH_NONE, door_path.status);
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_GOAL_OUTSIDE, door_path.cause);
+}
+
+static void test_several_goals_are_reached_in_one_drive(void) {
+    open_hall(2.0, 5.0, 0.0);
+    aisle_goal_list_msg goals = door_goals(1, 8.0, 5.0);
+    goals.goals[1] = (aisle_goal_msg){.id = 12, .x = 15.0, .y = 8.0, .tolerance_theta = 4.0F};
+    goals.num_goals = 2;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+    door_settle();
+    TEST_ASSERT_TRUE(drive_to(15.0, 8.0, 800) > 0);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_a_vehicle_alone_follows_one_path_to_its_goal);
+    RUN_TEST(test_a_person_far_away_changes_nothing);
+    RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
+    RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
+    RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);
+    RUN_TEST(test_a_stale_pose_brakes_the_vehicle_within_the_timeout);
+    RUN_TEST(test_a_pose_that_comes_back_lets_the_vehicle_drive_on);
+    RUN_TEST(test_a_vehicle_that_is_not_localized_brakes);
+    RUN_TEST(test_a_pose_off_the_path_brakes_and_plans_anew_from_rest);
+    RUN_TEST(test_a_source_that_falls_silent_brakes_the_vehicle);
+    RUN_TEST(test_another_goal_under_way_bends_the_path_behind_the_base);
+    RUN_TEST(test_a_wall_across_the_way_ahead_is_driven_round);
+    RUN_TEST(test_a_goal_that_cannot_be_reached_any_more_stops_the_vehicle_and_says_why);
+    RUN_TEST(test_several_goals_are_reached_in_one_drive);
+    return UNITY_END();
+}
