@@ -56,8 +56,8 @@ bool aisle_sim_localiser_step(aisle_sim_localiser *self, double now, double dt) 
 }
 
 aisle_sim_estimate aisle_sim_localiser_estimate(const aisle_sim_localiser *self, const aisle_sim_chassis *truth) {
-    return (aisle_sim_estimate){.pose = {truth->pose.x + self->x.value + self->white.x,
-                                         truth->pose.y + self->y.value + self->white.y,
+    return (aisle_sim_estimate){.pose = {truth->pose.x + self->x.value + self->white.x + self->off.x,
+                                         truth->pose.y + self->y.value + self->white.y + self->off.y,
                                          aisle_angle_wrap(truth->pose.theta + self->theta.value + self->white_theta)},
                                 .v = truth->v,
                                 .omega = aisle_sim_chassis_omega(truth)};

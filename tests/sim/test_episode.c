@@ -181,6 +181,17 @@ static void test_a_push_is_steered_away(void) {
     TEST_ASSERT_TRUE(episode.judge.static_gap > 0.0);
 }
 
+static void test_every_fault_reaches_the_drive(void) {
+    double plain = drive_with(""), way = episode.judge.way;
+    static const char *const faults[] = {"pose_silent:5:3", "unlocalized:5:3", "pose_jump:5:3:0.3",   "paths_lost:5:3",
+                                         "push:5:0:0.1",    "hold:5:3",        "obstacles_silent:1:9"};
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        double late = drive_with(faults[i]);
+        bool counts = strncmp(faults[i], "obstacles", 9) != 0; // without movers nobody need mind that
+        TEST_ASSERT_TRUE_MESSAGE(!counts || late != plain || episode.judge.way != way, faults[i]);
+    }
+}
+
 // ---- messages for later
 
 static void later(double at, aisle_channel channel, const void *msg, bool good) {
@@ -301,6 +312,7 @@ int main(void) {
     RUN_TEST(test_hold_stops_and_resume_goes_on);
     RUN_TEST(test_a_silent_localiser_ends_the_lease);
     RUN_TEST(test_a_push_is_steered_away);
+    RUN_TEST(test_every_fault_reaches_the_drive);
     RUN_TEST(test_a_list_that_replaces_another_is_driven);
     RUN_TEST(test_a_patch_changes_planner_and_hall);
     RUN_TEST(test_only_what_the_world_can_follow_is_scripted);
