@@ -445,10 +445,10 @@ bool aisle_mission_is_stale(const aisle_mission *self, const aisle_request *requ
     return !self->wanted || request->serial != self->serial;
 }
 
-// Those behind the first ones, which were reached, are what is left, in the order they are in.
-bool aisle_mission_take_order(aisle_mission *self, const aisle_request *request, uint32_t *passed) {
+// Those behind the first ones, which were reached, are what is left: by index in `list`, in the order they are in. False:
+// they are not.
+static bool order_of(const aisle_mission *self, const aisle_request *request, uint8_t *order) {
     const uint32_t count = (uint32_t)(uint16_t)request->num_goals, first = count - self->left;
-    uint8_t order[AISLE_GOAL_LIST_MAX_GOALS];
     AISLE_ASSERT(!aisle_mission_is_stale(self, request) && count >= self->left);
     for (uint32_t i = 0; i < self->left; i++) {
         const int32_t id = request->goals[first + i].id;
@@ -460,6 +460,18 @@ bool aisle_mission_take_order(aisle_mission *self, const aisle_request *request,
         AISLE_ASSERT(self->list[self->order[at]].id == id);
         order[i] = self->order[at];
     }
+    return true;
+}
+
+bool aisle_mission_fits(const aisle_mission *self, const aisle_request *request) {
+    uint8_t order[AISLE_GOAL_LIST_MAX_GOALS];
+    return order_of(self, request, order);
+}
+
+uint32_t aisle_mission_take_order(aisle_mission *self, const aisle_request *request) {
+    uint8_t order[AISLE_GOAL_LIST_MAX_GOALS];
+    const bool fits = order_of(self, request, order);
+    AISLE_ASSERT(fits);
     if (order[0] != self->order[0]) {
         break_rest(self);
     }
@@ -472,6 +484,5 @@ bool aisle_mission_take_order(aisle_mission *self, const aisle_request *request,
     }
     self->kept = self->sent = self->left;
     self->cause = 0;
-    *passed = first;
-    return true;
+    return (uint32_t)(uint16_t)request->num_goals - self->left;
 }

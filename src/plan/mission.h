@@ -123,9 +123,12 @@ aisle_request *aisle_mission_ask(aisle_mission *self, const aisle_pose_msg *pose
 // Is this request of the mission (maybe a copy) out of date, so that its plan would be for nothing?
 bool aisle_mission_is_stale(const aisle_mission *self, const aisle_request *request);
 
-// A plan for this request, not stale, stands; its goals are in the order planned. *passed: the first so many of them were
-// reached meanwhile. False, nothing changed: one was reached that is not among its first ones, ask again.
-bool aisle_mission_take_order(aisle_mission *self, const aisle_request *request, uint32_t *passed);
+// May a plan for this request, not stale, stand, its goals in the order planned? Not if one was reached meanwhile that is
+// not among its first ones: ask again.
+bool aisle_mission_fits(const aisle_mission *self, const aisle_request *request);
+
+// Such a plan, which fits, stands. Returns how many of its goals, its first ones, were reached meanwhile.
+uint32_t aisle_mission_take_order(aisle_mission *self, const aisle_request *request);
 
 // The goal being driven to; NULL: none.
 const aisle_goal_msg *aisle_mission_goal(const aisle_mission *self);

@@ -192,10 +192,11 @@ static void count_route(aisle_planner *self) {
     counters[route->request.is_query ? AISLE_COUNTER_QUERIES : AISLE_COUNTER_GOAL_LISTS]++;
 }
 
-// The mission's goal just refused is proved to be out of reach: the others are asked for, if that is wished.
+// The mission's goal just refused is proved to be out of reach: the others are asked for, if that is wished. A vehicle that
+// moves is stopped first: only one at rest was told which goal it is, and it will be when it has asked again.
 static void skip_unreachable(aisle_planner *self) {
     const aisle_route *route = self->route;
-    if (self->config.skip_unreachable && !route->request.is_query && route->named != AISLE_ROUTE_NONE &&
+    if (self->config.skip_unreachable && self->failed.cause == 0 && route->named != AISLE_ROUTE_NONE &&
         aisle_mission_is_out_of_reach(route->cause.cause)) {
         (void)aisle_mission_set_aside(&self->mission, &route->request, route->named);
     }

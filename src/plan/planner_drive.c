@@ -63,11 +63,10 @@ static void pass_goals(aisle_planner *self, uint32_t passed) {
 }
 
 void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
-    uint32_t passed = 0;
     if (!self->leaving.under_way && aisle_drive_moves(&self->drive)) { // a better path from where it has left
         return;
     }
-    if (!aisle_mission_take_order(&self->mission, request, &passed) ||
+    if (!aisle_mission_fits(&self->mission, request) ||
         (self->leaving.under_way && !take_under_way(self, request, proof))) {
         try_again(self);
         return;
@@ -75,7 +74,7 @@ void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, 
     if (!self->leaving.under_way) {
         aisle_drive_adopt(&self->drive, proof, request->goals, (uint32_t)(uint16_t)request->num_goals);
     }
-    pass_goals(self, passed);
+    pass_goals(self, aisle_mission_take_order(&self->mission, request));
     self->leaving.delay = 0.0;
     self->leaving.tries = 0;
     self->failed.cause = 0;

@@ -80,7 +80,7 @@ static void look_up_dwells(void) {
 }
 
 // 50 ms on along what is out and leased, or at rest.
-static void follow(void) {
+static void move(void) {
     door_now += 50000;
     here.vx = here.omega = 0.0F;
     if (door_path.status != AISLE_PATH_NONE && door_path.num_waypoints > 0 && door_now <= door_path.valid_until_utime) {
@@ -99,6 +99,10 @@ static void follow(void) {
     here.utime = door_now;
     here.seq++;
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+}
+
+static void follow(void) {
+    move();
     door_settle();
 }
 
@@ -490,6 +494,88 @@ static void test_behind_a_goal_that_is_kept_the_order_is_the_best(void) {
     TEST_ASSERT_EQUAL_INT(12, hits);
 }
 
+// ---- at any moment
+
+// What happens to a mission over 11 and 12 after this many seconds of driving; in the end it is at 13.
+static void at_every_moment(void (*event)(void)) {
+    for (int i = 0; i < 36; i++) {
+        setUp();
+        begin_list(1);
+        (void)add(11, 3.0, 1.0);
+        (void)add(12, 3.0, 4.0);
+        start_list();
+        drive(0.35 * i);
+        event();
+        (void)drive_until(0);
+        is_at(2.0, 6.0);
+        is_finished();
+    }
+}
+
+static void extend(void) {
+    list.goal_list_revision = 2;
+    (void)add(13, 2.0, 6.0);
+    send_list();
+}
+
+static void extend_and_skip_12(void) {
+    extend();
+    (void)command(AISLE_COMMAND_CANCEL, 12, 1); // or it is reached
+}
+
+static void extend_and_skip_what_is_next(void) {
+    extend();
+    follow();
+    if (next_goal() != 13) {
+        TEST_ASSERT_EQUAL(AISLE_OK, command(AISLE_COMMAND_CANCEL, next_goal(), 1));
+    }
+}
+
+static void extend_and_change_the_hall(void) {
+    extend();
+    hall_add(9.0, 6.0, 10.0, 7.0);
+    build_hall(2);
+}
+
+static void replace(void) {
+    begin_list(1);
+    list.goal_list_id = 9;
+    (void)add(13, 2.0, 6.0);
+    send_list();
+}
+
+static void replace_twice(void) {
+    begin_list(1);
+    list.goal_list_id = 9;
+    (void)add(11, 1.0, 1.0);
+    send_list();
+    follow();
+    list.goal_list_revision = 2;
+    list.goals[0] = (aisle_goal_msg){.id = 13, .x = 2.0, .y = 6.0, .tolerance_theta = 4.0F};
+    send_list();
+}
+
+static void test_a_list_may_be_extended_at_any_moment(void) {
+    at_every_moment(extend);
+}
+
+static void test_a_goal_on_the_way_may_be_skipped_at_any_moment(void) {
+    at_every_moment(extend_and_skip_12);
+}
+
+static void test_the_goal_being_driven_to_may_be_skipped_at_any_moment(void) {
+    at_every_moment(extend_and_skip_what_is_next);
+}
+
+static void test_the_hall_may_change_at_any_moment(void) {
+    at_every_moment(extend_and_change_the_hall);
+}
+
+static void test_a_list_may_be_replaced_at_any_moment(void) {
+    at_every_moment(replace);
+    at_every_moment(replace_twice);
+}
+
 // ---- skipping on command
 
 static void test_a_goal_is_skipped_on_command(void) {
@@ -705,6 +791,54 @@ static void test_a_query_skips_nothing(void) {
     TEST_ASSERT_EQUAL_INT(1, door_replies);
 }
 
+// 12 is added under way, in a room without a door.
+static void add_one_out_of_reach(bool skips) {
+    open_door(skips);
+    hall_add(9.0, 5.5, 12.0, 5.7);
+    hall_add(9.0, 5.5, 9.2, 8.0);
+    build_hall(1);
+    begin_list(1);
+    (void)add(11, 10.0, 1.0);
+    start_list();
+    drive(2.0);
+    list.goal_list_revision = 2;
+    (void)add(12, 11.0, 7.0);
+    (void)add(13, 10.0, 3.0);
+    send_list();
+}
+
+static void test_a_goal_out_of_reach_that_is_added_under_way_is_named_and_waits(void) {
+    add_one_out_of_reach(false);
+    drive(5.0);
+    refused_with(AISLE_STATUS_NO_PATH, 12);
+    TEST_ASSERT_EQUAL(AISLE_STATUS_BLOCKED, status_now().state);
+    TEST_ASSERT_EQUAL_INT32(11, next_goal());
+    TEST_ASSERT_EQUAL(AISLE_OK, command(AISLE_COMMAND_CANCEL, 12, 1));
+    drive(0.5);
+    passes(IDS(11, 13));
+    (void)drive_until(0);
+    is_at(10.0, 3.0);
+}
+
+static void test_a_goal_out_of_reach_that_is_added_under_way_is_named_and_skipped_if_so_configured(void) {
+    add_one_out_of_reach(true);
+    TEST_ASSERT_EQUAL_INT8(AISLE_PATH_STOP, door_path.status); // it has to be at rest to be told
+    while (door_path.status != AISLE_PATH_NONE || door_path.num_waypoints == 0) {
+        move();
+        TEST_ASSERT_TRUE(door_path.status != AISLE_PATH_OK && door_now < 20000000);
+        do {
+            door_pull_events();
+        } while ((door_path.status != AISLE_PATH_NONE || door_path.num_waypoints == 0) &&
+                 aisle_planner_step(door, door_now, 1000) == AISLE_BUSY);
+    }
+    refused_with(AISLE_STATUS_NO_PATH, 12);
+    door_settle();
+    passes(IDS(11, 13));
+    (void)drive_until(0);
+    is_at(10.0, 3.0);
+    is_finished();
+}
+
 static void test_of_goals_that_share_an_id_the_one_out_of_reach_is_skipped(void) {
     open_door(true);
     shut_in();
@@ -737,6 +871,11 @@ int main(void) {
     RUN_TEST(test_an_order_stays_when_there_is_no_reason_to_change_it);
     RUN_TEST(test_in_any_order_the_goal_being_driven_to_stays_the_first_of_a_longer_list);
     RUN_TEST(test_behind_a_goal_that_is_kept_the_order_is_the_best);
+    RUN_TEST(test_a_list_may_be_extended_at_any_moment);
+    RUN_TEST(test_a_goal_on_the_way_may_be_skipped_at_any_moment);
+    RUN_TEST(test_the_goal_being_driven_to_may_be_skipped_at_any_moment);
+    RUN_TEST(test_the_hall_may_change_at_any_moment);
+    RUN_TEST(test_a_list_may_be_replaced_at_any_moment);
     RUN_TEST(test_a_goal_is_skipped_on_command);
     RUN_TEST(test_skipping_a_goal_that_is_not_left_is_refused_and_nothing_changes);
     RUN_TEST(test_skipping_the_last_goal_ends_the_mission);
@@ -747,6 +886,8 @@ int main(void) {
     RUN_TEST(test_a_vehicle_that_is_shut_in_keeps_its_mission);
     RUN_TEST(test_what_is_no_proof_skips_nothing);
     RUN_TEST(test_a_query_skips_nothing);
+    RUN_TEST(test_a_goal_out_of_reach_that_is_added_under_way_is_named_and_waits);
+    RUN_TEST(test_a_goal_out_of_reach_that_is_added_under_way_is_named_and_skipped_if_so_configured);
     RUN_TEST(test_of_goals_that_share_an_id_the_one_out_of_reach_is_skipped);
     return UNITY_END();
 }
