@@ -69,7 +69,8 @@ static void put_mover(double x, double y, double radius, double v_bound) {
 }
 
 static aisle_pace_request request_at(aisle_place at, double v) {
-    return (aisle_pace_request){.vehicle = &vehicle,
+    return (aisle_pace_request){.layout = &hall,
+                                .vehicle = &vehicle,
                                 .movers = &movers,
                                 .w = path,
                                 .n = count,

@@ -82,6 +82,18 @@ static void test_unhindered_it_takes_as_long_as_the_path_says(void) {
     }
 }
 
+static void test_rest_on_the_way_is_no_standing_however_long(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(6.0, 1.0);
+    set_flag(&path[3], AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_GOAL);
+    dwell[3] = 100.0F;
+    fill_way();
+    const aisle_pace_predict_request request = request_from((aisle_place){1, 0.0}, 0.0);
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request));
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, (double)path[count - 1].t, predict.seconds);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, predict.waited);
+}
+
 static void test_where_it_is_already_it_takes_no_time(void) {
     random_way(3, 12, false);
     aisle_pace_predict_request request = request_from((aisle_place){4, 1.0}, 0.0);
@@ -286,6 +298,7 @@ static void test_a_way_of_hours_ends_with_its_own_time(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_unhindered_it_takes_as_long_as_the_path_says);
+    RUN_TEST(test_rest_on_the_way_is_no_standing_however_long);
     RUN_TEST(test_where_it_is_already_it_takes_no_time);
     RUN_TEST(test_it_agrees_with_a_fine_simulation_of_crossing_movers);
     RUN_TEST(test_a_standing_blocker_costs_what_it_takes_to_get_there_and_a_minute);

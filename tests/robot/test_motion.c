@@ -412,6 +412,13 @@ static void test_a_track_driven_both_ways_is_followed_in_order(void) {
     }
 }
 
+static void test_behind_a_high_barrier_nothing_is_looked_at(void) {
+    make_cusp();
+    const aisle_place from = {1, 0.5}; // a metre before the change of direction; the pose jumps back
+    const aisle_place q = aisle_motion_project(path, count, from, 0.5, 3.0, (aisle_pose2){0.55, 0.0, 0.0}, NULL);
+    TEST_ASSERT_TRUE(q.piece == 1 && fabs(q.u - 0.275) < 1e-9);
+}
+
 static void test_turns_on_the_spot_are_matched_by_heading(void) {
     const double turns[] = {0.5 * AISLE_PI, -3.1, 3.1, 0.3};
     for (int k = 0; k < 4; k++) {
@@ -569,6 +576,15 @@ static void test_a_trapezoid_cut_in_motion_is_driven_on_as_it_was(void) {
     }
 }
 
+static void test_the_last_of_a_turn_takes_its_millisecond(void) {
+    set_flag(add(0.0, 0.0, 0.0), AISLE_WAYPOINT_TURN_IN_PLACE);
+    (void)add(0.0, 0.0, 1.0);
+    fill();
+    cut_at((aisle_place){1, 1.0 - 2e-7});
+    TEST_ASSERT_EQUAL_UINT32(2, left);
+    TEST_ASSERT_TRUE((double)rest[1].t >= 1e-3);
+}
+
 static void test_a_goal_is_told_until_its_waypoint_is_left(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(1.0, 0.5);
@@ -646,6 +662,19 @@ static void test_it_rests_where_a_fine_simulation_does(void) {
     }
 }
 
+static void test_a_rest_on_the_way_takes_its_time_before_it_brakes(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(4.0, 1.0);
+    set_flag(&path[2], AISLE_WAYPOINT_STOP);
+    dwell[2] = 0.5F;
+    fill();
+    const aisle_place q = aisle_motion_rest(&vehicle, path, count, dwell, (aisle_place){2, 1.0}, 0.0, 1.5);
+    // 1 s at 0.5 m/s2, and as long again to brake
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 + 0.25 + 0.25, aisle_motion_length_to(path, count, q));
+    const aisle_place stays = aisle_motion_rest(&vehicle, path, count, dwell, (aisle_place){2, 1.0}, 0.0, 0.4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0, aisle_motion_length_to(path, count, stays));
+}
+
 static void test_braking_never_leads_beyond_where_the_path_rests(void) {
     make_cusp();
     const aisle_place p = {1, 0.9};
@@ -687,15 +716,18 @@ int main(void) {
     RUN_TEST(test_the_window_bounds_the_place);
     RUN_TEST(test_it_is_not_left_for_another_branch_where_the_path_crosses_itself);
     RUN_TEST(test_a_track_driven_both_ways_is_followed_in_order);
+    RUN_TEST(test_behind_a_high_barrier_nothing_is_looked_at);
     RUN_TEST(test_turns_on_the_spot_are_matched_by_heading);
     RUN_TEST(test_a_wait_stays_where_it_is_until_the_vehicle_drives_on);
     RUN_TEST(test_a_cut_path_is_the_old_one_from_there_on);
     RUN_TEST(test_a_cut_path_has_the_old_times_less_the_times_of_the_cut);
     RUN_TEST(test_a_cut_keeps_flags_goals_and_figures_behind_the_first_waypoint);
     RUN_TEST(test_a_trapezoid_cut_in_motion_is_driven_on_as_it_was);
+    RUN_TEST(test_the_last_of_a_turn_takes_its_millisecond);
     RUN_TEST(test_a_goal_is_told_until_its_waypoint_is_left);
     RUN_TEST(test_without_room_a_cut_says_so_and_writes_no_more_than_there_is);
     RUN_TEST(test_it_rests_where_a_fine_simulation_does);
+    RUN_TEST(test_a_rest_on_the_way_takes_its_time_before_it_brakes);
     RUN_TEST(test_braking_never_leads_beyond_where_the_path_rests);
     RUN_TEST(test_too_fast_a_vehicle_brakes_at_once_down_to_the_path);
     return UNITY_END();
