@@ -51,7 +51,7 @@ void aisle_pace_predict_start(aisle_pace_predict *self, const aisle_pace_predict
     self->request = *request;
     self->seconds = self->waited = self->rested = self->stood = self->gained = 0.0;
     self->slowest = (double)INFINITY;
-    self->steps = 0;
+    self->steps = self->level = 0;
     self->outcome = AISLE_BUSY;
     self->movers_move = any_moves(request->movers);
     take_way(self);
@@ -102,12 +102,12 @@ static bool is_safe(aisle_pace_predict *self, uint32_t level, uint32_t *spent) {
     return !self->band.overflow && is_clear(self, spent);
 }
 
-// The fastest level that is safe now; from rest none is if the slowest is not.
+// The fastest level that is safe now, faster than the last one by one at most; from rest none is if the slowest is not.
 static uint32_t choose(aisle_pace_predict *self, uint32_t *spent) {
     if (!(self->v > 0.0) && !is_safe(self, AISLE_PACE_STOP - 1U, spent)) {
         return AISLE_PACE_STOP;
     }
-    for (uint32_t level = 0; level < AISLE_PACE_STOP;) {
+    for (uint32_t level = self->level > 0 ? self->level - 1U : 0U; level < AISLE_PACE_STOP;) {
         if (is_safe(self, level, spent)) {
             return level;
         }
@@ -232,7 +232,7 @@ static void step(aisle_pace_predict *self, uint32_t *spent) {
         self->outcome = AISLE_OK;
         return;
     }
-    const uint32_t level = choose(self, spent);
+    const uint32_t level = self->level = choose(self, spent);
     const double cap = aisle_pace_cap(self->request.vehicle, level);
     leap it = {.time = AISLE_PREDICT_STEP};
     if (level == AISLE_PACE_STOP) {

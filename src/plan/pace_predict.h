@@ -1,8 +1,8 @@
 // pace_predict.h - how long driving on along a way will take, if movers go on as they do: slow down, wait or go round? Level 4.
 //
-// Drives on in steps of AISLE_PREDICT_STEP, at each with the fastest level of pace.h that is passively safe then (at rest it
-// stays there if the slowest is not). Movers go on at constant velocity; at each step they are taken as measured anew,
-// AISLE_PREDICT_AGE old, so that their reach is no
+// Drives on in steps of AISLE_PREDICT_STEP, at each with the fastest level of pace.h that is passively safe then, faster than
+// the last one by one at most; at rest it stays there if the slowest is not. Movers go on at constant velocity; at each
+// step they are taken as measured anew, AISLE_PREDICT_AGE old, so that their reach is no
 // larger than the vehicle would find it. A prediction, for comparing ways with one another, not for safety: so waiting
 // for a mover and going round it are measured alike, each on its own way.
 //
@@ -42,7 +42,7 @@ typedef struct aisle_pace_predict {
     // Its own.
     aisle_waypoint_msg *w; // [AISLE_PATH_MAX_WAYPOINTS] from `at` on
     float *dwell;          // likewise
-    uint32_t n, until, steps;
+    uint32_t n, until, steps, level;
     aisle_place at;
     double v, rested;     // m/s; s of the rest before the next piece that are over
     double stood, gained; // s without AISLE_PREDICT_GAIN; what it made in them
