@@ -25,7 +25,7 @@ typedef struct aisle_sim_batch {
     int64_t revisions, stops;
     double seconds, way, separation_moving; // s of all drives, m, m
     double late;                            // sum of time over the way without movers, of those that arrived
-    aisle_histogram work;
+    aisle_histogram work, answers_cpu;
 } aisle_sim_batch;
 
 void aisle_sim_batch_start(aisle_sim_batch *self, aisle_sim_kind kind, uint64_t first);

@@ -42,17 +42,27 @@ aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_setting
     return status;
 }
 
-int64_t aisle_sim_host_clock_us(void) {
+int64_t aisle_sim_host_clock_us(clockid_t clock) {
     struct timespec t = {0, 0};
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
+    (void)clock_gettime(clock, &t);
     return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
 }
 
-static void note_work(aisle_sim_host *self, int64_t start, int64_t before) {
-    int64_t took = aisle_sim_host_clock_us() - start;
-    aisle_histogram_add(&self->work, took);
-    if (self->heard_paths > before) {
-        aisle_histogram_add(&self->answers, took);
+typedef struct stopwatch {
+    int64_t wall_us, cpu_us, paths;
+} stopwatch;
+
+static stopwatch start_watch(const aisle_sim_host *self) {
+    return (stopwatch){aisle_sim_host_clock_us(CLOCK_MONOTONIC), aisle_sim_host_clock_us(CLOCK_THREAD_CPUTIME_ID),
+                       self->heard_paths};
+}
+
+static void stop_watch(aisle_sim_host *self, const stopwatch *from) {
+    int64_t wall = aisle_sim_host_clock_us(CLOCK_MONOTONIC) - from->wall_us;
+    aisle_histogram_add(&self->work, wall);
+    if (self->heard_paths > from->paths) {
+        aisle_histogram_add(&self->answers, wall);
+        aisle_histogram_add(&self->answers_cpu, aisle_sim_host_clock_us(CLOCK_THREAD_CPUTIME_ID) - from->cpu_us);
     }
 }
 
@@ -76,9 +86,9 @@ void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime) {
     if (self->units_per_ms > 0) {
         aisle_sim_host_slow_advance(self, utime);
     } else if (aisle_planner_next_deadline(self->engine.planner) <= utime) {
-        int64_t start = aisle_sim_host_clock_us(), before = self->heard_paths;
+        stopwatch watch = start_watch(self);
         aisle_replay_advance(&self->replay, utime);
-        note_work(self, start, before);
+        stop_watch(self, &watch);
     }
     if (utime >= self->next_status_us) {
         tell_status(self, utime);
@@ -98,9 +108,9 @@ void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel chan
         return;
     }
     aisle_sim_host_write_log(self, utime, channel, bytes, size);
-    int64_t start = aisle_sim_host_clock_us(), before = self->heard_paths;
+    stopwatch watch = start_watch(self);
     aisle_replay_input(&self->replay, utime, channel, bytes, size);
-    note_work(self, start, before);
+    stop_watch(self, &watch);
 }
 
 void aisle_sim_host_stop(aisle_sim_host *self) {

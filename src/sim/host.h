@@ -22,6 +22,8 @@
 #include "replay/replay.h"
 #include "sim/post.h"
 
+#include <time.h>
+
 // One message of the planner's: PATH, REPLY, STATUS. Valid during the call.
 typedef void (*aisle_sim_heard)(void *ctx, aisle_channel channel, int64_t utime, const uint8_t *bytes, size_t size);
 
@@ -63,6 +65,7 @@ typedef struct aisle_sim_host {
     // both: us of the work that brought a path (core, at once), or from an input's sending to the first path that rests on
     // it (bus)
     aisle_histogram answers;
+    aisle_histogram answers_cpu; // core: the same in processor time, which others on the machine do not stretch
 } aisle_sim_host;
 
 // The planner in this process, its output to `heard`. settings, log: as long as the host. AISLE_ERR_*: as
@@ -85,7 +88,7 @@ void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel chan
 void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime);
 
 // Files of this module alone.
-int64_t aisle_sim_host_clock_us(void); // the computer's, monotonic
+int64_t aisle_sim_host_clock_us(clockid_t clock); // of the computer
 void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                               size_t size);
 void aisle_sim_host_bus_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,

@@ -85,6 +85,7 @@ void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
     text_of_times(e->host->lcm != NULL ? "from message to answer" : "work of what brought a path", &e->host->answers,
                   out);
     if (e->host->lcm == NULL) {
+        text_of_times("the same in processor time", &e->host->answers_cpu, out);
         text_of_times("work of each input and deadline", &e->host->work, out);
     }
 }
@@ -160,6 +161,7 @@ void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
     json_of_contacts(judge, out);
     json_of_faults(e, out);
     json_of_times("answer_ms", &e->host->answers, out);
+    json_of_times("answer_cpu_ms", &e->host->answers_cpu, out);
     json_of_times("work_ms", &e->host->work, out);
     (void)fprintf(out, "}\n");
 }
