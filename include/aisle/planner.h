@@ -35,7 +35,8 @@
 // whose goals share an id, or of an ordering there is not, is refused whole and the mission goes on.
 // A goal that cannot be reached is named (path_msg, status NONE) and the list waits for another layout, vehicle or revision.
 // It is skipped only when told to: by CANCEL with its id as arg, or, if it is proved to be out of reach, by
-// aisle_config.skip_unreachable: after it was named the others are planned. If none can be reached none is skipped.
+// aisle_config.skip_unreachable: after it was named the others are planned. If none can be reached none is skipped. A
+// vehicle under way is stopped first: status NONE revokes what it drives by.
 // Memory of answers: what a query was answered is remembered by what it asked (start, goals, options, vehicle, layout; no
 // ids or times of messages), and a query or goal list that asks the same gets it, path_msg.cached set, after a proof on
 // the layout in force. A changed layout keeps what it does not touch (plan/cache.h says by what rule, and what that
