@@ -42,10 +42,14 @@ aisle_status aisle_sim_host_start_core(aisle_sim_host *self, const aisle_setting
     return status;
 }
 
-int64_t aisle_sim_host_clock_us(clockid_t clock) {
+static int64_t clock_us(clockid_t clock) {
     struct timespec t = {0, 0};
     (void)clock_gettime(clock, &t);
     return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
+}
+
+int64_t aisle_sim_host_wall_us(void) {
+    return clock_us(CLOCK_MONOTONIC);
 }
 
 typedef struct stopwatch {
@@ -53,16 +57,15 @@ typedef struct stopwatch {
 } stopwatch;
 
 static stopwatch start_watch(const aisle_sim_host *self) {
-    return (stopwatch){aisle_sim_host_clock_us(CLOCK_MONOTONIC), aisle_sim_host_clock_us(CLOCK_THREAD_CPUTIME_ID),
-                       self->heard_paths};
+    return (stopwatch){clock_us(CLOCK_MONOTONIC), clock_us(CLOCK_THREAD_CPUTIME_ID), self->heard_paths};
 }
 
 static void stop_watch(aisle_sim_host *self, const stopwatch *from) {
-    int64_t wall = aisle_sim_host_clock_us(CLOCK_MONOTONIC) - from->wall_us;
+    int64_t wall = clock_us(CLOCK_MONOTONIC) - from->wall_us;
     aisle_histogram_add(&self->work, wall);
     if (self->heard_paths > from->paths) {
         aisle_histogram_add(&self->answers, wall);
-        aisle_histogram_add(&self->answers_cpu, aisle_sim_host_clock_us(CLOCK_THREAD_CPUTIME_ID) - from->cpu_us);
+        aisle_histogram_add(&self->answers_cpu, clock_us(CLOCK_THREAD_CPUTIME_ID) - from->cpu_us);
     }
 }
 

@@ -22,8 +22,6 @@
 #include "replay/replay.h"
 #include "sim/post.h"
 
-#include <time.h>
-
 // One message of the planner's: PATH, REPLY, STATUS. Valid during the call.
 typedef void (*aisle_sim_heard)(void *ctx, aisle_channel channel, int64_t utime, const uint8_t *bytes, size_t size);
 
@@ -88,7 +86,7 @@ void aisle_sim_host_send(aisle_sim_host *self, int64_t utime, aisle_channel chan
 void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime);
 
 // Files of this module alone.
-int64_t aisle_sim_host_clock_us(clockid_t clock); // of the computer
+int64_t aisle_sim_host_wall_us(void); // of the computer, monotonic
 void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                               size_t size);
 void aisle_sim_host_bus_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,

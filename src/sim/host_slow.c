@@ -46,9 +46,9 @@ static void step(aisle_sim_host *self) {
     uint32_t units = self->units_per_ms * SLICE_US / 1000U;
     units = units > 0 ? units : 1U;
     aisle_record_step(&self->record, self->clock_us, units);
-    int64_t start = aisle_sim_host_clock_us(CLOCK_MONOTONIC);
+    int64_t start = aisle_sim_host_wall_us();
     self->idle = aisle_planner_step(self->engine.planner, self->clock_us, units) == AISLE_OK;
-    aisle_histogram_add(&self->work, aisle_sim_host_clock_us(CLOCK_MONOTONIC) - start);
+    aisle_histogram_add(&self->work, aisle_sim_host_wall_us() - start);
     self->free_us = self->clock_us + SLICE_US;
     pull(self, self->free_us);
 }
