@@ -267,8 +267,8 @@ def test_playing_ends_at_the_end_and_begins_anew(shown):
     shown.js("document.getElementById('rate').value = '16', document.getElementById('rate').onchange()")
     move_slider(shown, 19.5)
     click(shown, "play")
-    shown.until("document.getElementById('run').dataset.playing === 'false'")
-    assert float(state(shown)["time"]) == pytest.approx(20.0, abs=0.01)
+    shown.until("+document.getElementById('run').dataset.time >= 20")
+    assert state(shown)["playing"] == "false"
     click(shown, "play")
     shown.until("+document.getElementById('run').dataset.time < 10")
     click(shown, "play")
@@ -287,7 +287,11 @@ def test_keys_seek_step_and_play(shown):
     assert float(state(shown)["time"]) == pytest.approx(8.0)
     shown.key("End")
     assert float(state(shown)["time"]) == pytest.approx(20.0)
+    shown.key("ArrowRight")
+    assert float(state(shown)["time"]) == pytest.approx(20.0)
     shown.key("Home")
+    assert float(state(shown)["time"]) == 0.0
+    shown.key("ArrowLeft")
     assert float(state(shown)["time"]) == 0.0
     shown.key(" ", "Space")
     assert state(shown)["playing"] == "true"
@@ -310,13 +314,15 @@ def test_revisions_and_events_are_rows_that_lead_to_their_time(shown):
 def test_the_wheel_zooms_where_it_points_and_dragging_moves(shown):
     before = state(shown)
     box = box_of(shown, "scene")
-    at = (box[0] + 0.25 * box[2], box[1] + 0.5 * box[3])
+    at = (box[0] + 0.25 * box[2], box[1] + 0.3 * box[3])
     shown.mouse("mouseWheel", *at, deltaX=0, deltaY=-200)
     zoomed = state(shown)
-    scale, cx = float(before["scale"]), float(before["cx"])
+    scale, cx, cy = (float(before[k]) for k in ("scale", "cx", "cy"))
     assert float(zoomed["scale"]) > 1.2 * scale
     fixed = cx - 0.25 * box[2] / scale
     assert float(zoomed["cx"]) - 0.25 * box[2] / float(zoomed["scale"]) == pytest.approx(fixed, abs=0.01)
+    fixed = cy + 0.2 * box[3] / scale
+    assert float(zoomed["cy"]) + 0.2 * box[3] / float(zoomed["scale"]) == pytest.approx(fixed, abs=0.01)
     shown.drag(*at, at[0] + 50, at[1])
     assert float(state(shown)["cx"]) == pytest.approx(float(zoomed["cx"]) - 50 / float(zoomed["scale"]), abs=0.01)
     click(shown, "fit")
@@ -369,9 +375,26 @@ def test_layout_vehicle_and_movers_are_drawn_where_they_are(shown):
     assert pixel(shown, 4.1, 2.15) != floor and pixel(shown, 3.0, 2.15) == floor  # vehicle
     assert pixel(shown, 8.0, 6.9) != floor  # person
     assert pixel(shown, 15.3, 8.1) != floor and pixel(shown, 17.0, 8.1) == floor  # cart
+    click(shown, "show-reach")
+    along, across = (0.45 * math.cos(0.5), 0.45 * math.sin(0.5)), (-0.45 * math.sin(0.5), 0.45 * math.cos(0.5))
+    assert pixel(shown, 15.0 + along[0], 8.0 + along[1]) != floor  # longer than wide, at its heading
+    assert pixel(shown, 15.0 + across[0], 8.0 + across[1]) == floor
     assert pixel(shown, 10.0, 2.0) != floor  # path
     move_slider(shown, 9.0)
     assert pixel(shown, 10.0, 2.0) == floor  # revoked
+
+
+def test_a_click_on_a_mover_tells_of_it(shown):
+    move_slider(shown, 6.05)
+    box = box_of(shown, "scene")
+    x, y = shown.js("[sx(8.0), sy(6.8)]")
+    held = {"x": box[0] + x, "y": box[1] + y, "button": "left", "clickCount": 1}
+    shown.mouse("mousePressed", buttons=1, **held)
+    shown.mouse("mouseReleased", **held)
+    state(shown)
+    told = shown.js("document.getElementById('facts').textContent")
+    away = math.hypot(8.0 - 1.0 - V * 6.05, 8.0 - 0.2 * 6.05 - 2.0)
+    assert f"mover 42person, 0.20 of at most 1.60 m/s, {away:.2f} m away, measured 0.05 s ago, reach 0.48 m" in told
 
 
 def test_the_lease_is_told_as_it_runs_out(shown):
@@ -425,6 +448,14 @@ def test_a_part_of_the_run_keeps_what_held_when_it_begins(tmp_path):
     assert [p["rev"] for p in found["paths"]] == [2, 3]
     times = np.cumsum(found["poses"]["t"]) / 1e3
     assert times[0] == pytest.approx(6.0) and times[-1] == pytest.approx(9.0)
+    seen = np.cumsum(found["movers"]["sources"][0]["t"]) / 1e3
+    assert seen[0] == pytest.approx(5.9) and seen[-1] == pytest.approx(9.0)
+
+
+def test_an_age_is_that_of_the_measurement_unless_the_clocks_differ(tmp_path):
+    log = view_log.Log(drive(tmp_path / "run.log"), "AISLE")
+    assert log.clock(5.0, T0 + 4_900_000) == pytest.approx(4.9)
+    assert log.clock(5.0, 77) == 5.0
 
 
 def test_the_least_gap_is_that_of_the_bodies(tmp_path):
@@ -470,6 +501,36 @@ def test_undecodable_messages_are_left_out_and_counted(tmp_path, capsys):
     log.close()
     view(tmp_path / "run.log", "--to", "20")
     assert "1 undecodable messages left out" in capsys.readouterr().out
+
+
+def test_what_is_no_number_does_no_harm(browser, tmp_path):
+    log = LogWriter(drive(tmp_path / "run.log"), "AISLE")
+    pose, path, status, seen = make_pose(5.0), make_path(5.0, 9), make_status(4), make_obstacles(5.0, 999)
+    pose.x = path.waypoints[1].x = path.length = status.distance_remaining = math.nan
+    o = seen.obstacles[0]
+    o.x, o.vx, o.radius, o.v_bound = math.nan, math.inf, math.nan, math.inf
+    for name, msg in (("POSE", pose), ("PATH", path), ("STATUS", status), ("OBSTACLES", seen)):
+        write(log, 21.0, name, msg)
+    log.close()
+    found = view(tmp_path / "run.log")
+    assert "NaN" not in json.dumps(data_of(found))
+    show(browser, found, "#t=21")
+    assert browser.errors == []
+
+
+def test_a_reply_is_shown_on_the_map_it_was_asked_on(browser, tmp_path):
+    log = LogWriter(ask(tmp_path / "asked.log"), "AISLE")
+    empty = World("second", (0.0, 0.0, 40.0, 10.0))
+    for name, msg in layouts.make_messages(empty, 2, 5, T0, 96):
+        write(log, 3.0, name, msg)
+    reply = make_path(0.0, 0)
+    reply.query_id, reply.map_id, reply.map_revision = 3, 2, 5
+    write(log, 3.1, "REPLY", reply)
+    log.close()
+    show(browser, view(tmp_path / "asked.log"))
+    assert browser.js("layoutAt(0).bounds[2]") == 20.0
+    browser.js("document.querySelectorAll('#replies tr')[2].click()")
+    assert browser.js("layoutAt(0).bounds[2]") == 40.0
 
 
 def test_a_patch_changes_the_layout_from_its_time_on(tmp_path):
@@ -524,7 +585,9 @@ def test_speeds_between_waypoints_are_those_of_the_wire_convention():
     assert rows[at[1], 3] == pytest.approx(V)
     half = rows[np.searchsorted(rows[:, 0], 10.5)]
     assert half[3] == pytest.approx(V * math.sqrt((12.0 - half[0]) / 3.0))
-    assert (np.diff(rows[:, 4]) > 0.0).all() and rows[-1, 4] == pytest.approx(path.waypoints[-1].t)
+    begin, end = path.waypoints[1].t, path.waypoints[2].t
+    assert half[4] == pytest.approx(begin + (end - begin) * (1.0 - half[3] / V), abs=0.03 * (end - begin))
+    assert (np.diff(rows[:, 4]) > 0.0).all() and rows[-1, 4] == pytest.approx(end)
 
 
 def test_a_revision_tells_what_changed():

@@ -126,11 +126,11 @@ def bodies_of(log: Log, args: argparse.Namespace) -> list[tuple[float, Body, int
 def worlds(log: Log, args: argparse.Namespace) -> list[dict]:
     if args.map is not None:
         margin = args.margin if args.margin is not None else 0.0
-        return [view_log.encode_world(0.0, maps.read_any(args.map, args, margin)[0])]
+        return [view_log.encode_world(0.0, maps.read_any(args.map, args, margin)[0], (0, 0))]
     found = view_log.worlds_of(log)
     if not found:
         raise UserError(f"{log.path}: no layout of prefix {args.prefix} is in the log; record it, too, or give --map FILE")
-    return [view_log.encode_world(t, world) for t, world in found]
+    return [view_log.encode_world(*entry) for entry in found]
 
 
 def page(data: dict, title: str) -> str:

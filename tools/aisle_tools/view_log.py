@@ -32,7 +32,7 @@ from aisle_tools import layouts, names, plot, vehicle
 from aisle_tools.bus import read_events
 from aisle_tools.errors import UserError
 from aisle_tools.vehicle import Body
-from aisle_tools.view_paths import change_of, integers, reply_of, result_of
+from aisle_tools.view_paths import change_of, integers, number, result_of
 from aisle_tools.world import Grid, Polygon, World
 
 TYPES = {
@@ -125,7 +125,7 @@ def thinned(times: np.ndarray, interval: float) -> np.ndarray:
 
 
 # ---- layout
-def worlds_of(log: Log) -> list[tuple[float, World]]:
+def worlds_of(log: Log) -> list[tuple[float, World, tuple[int, int]]]:
     """Every layout revision with the time from which all its parts and tiles are in, patches applied."""
     groups: dict[tuple[int, int], Revision] = {}
     for name in ("LAYOUT", "GRID"):
@@ -145,7 +145,7 @@ def worlds_of(log: Log) -> list[tuple[float, World]]:
             found.setdefault((patch.map_id, patch.map_revision), (t, patched(base[1], patch)))
     if not found and faults:
         raise UserError(f"{faults[0]} (--map FILE shows the run on a map of your own)")
-    return sorted(found.values(), key=lambda entry: entry[0])
+    return sorted(((t, world, key) for key, (t, world) in found.items()), key=lambda entry: entry[0])
 
 
 class Revision:
@@ -187,14 +187,14 @@ def grid_picture(grid: Grid) -> dict:
     return {"x": grid.origin_x, "y": grid.origin_y, "w": level.shape[1] * size, "h": level.shape[0] * size, "png": png}
 
 
-def encode_world(t: float, world: World) -> dict:
+def encode_world(t: float, world: World, key: tuple[int, int]) -> dict:
     shapes = [
         {"id": p.ident, "kind": p.kind, "dir": round(p.direction, 4), "v": np.round(p.vertices, 4).tolist()}
         for p in world.polygons
     ]
     box = [round(float(c), 3) for c in plot.view_box(world)]
     grid = grid_picture(world.grid) if world.grid is not None else None
-    return {"t": round(t, 3), "bounds": list(world.bounds), "box": box, "polygons": shapes, "grid": grid}
+    return {"t": round(t, 3), "key": key, "bounds": list(world.bounds), "box": box, "polygons": shapes, "grid": grid}
 
 
 # ---- vehicle and poses
@@ -246,14 +246,14 @@ class Snapshot:
 
 def traits(o: obstacle_t, source: int) -> tuple:
     """What seldom changes of a mover: id, source, kind, rounding radius, reach radius, 3 sigma, bound, corners."""
-    corners = tuple((round(x, 3), round(y, 3)) for x, y in o.vertices[: o.num_vertices])
+    corners = tuple((number(x, 3), number(y, 3)) for x, y in o.vertices[: o.num_vertices])
     whole = o.radius + max((math.hypot(x, y) for x, y in corners), default=0.0)
     xx, xy, yy = o.cov_xy
     largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
     sigma = math.sqrt(max(largest, 0.0)) if any(o.cov_xy) else SIGMA_DEFAULT
     bound = max(o.v_bound or BOUND_BY_KIND.get(o.kind, BOUND), math.hypot(o.vx, o.vy))
-    spread = round(3.0 * sigma, 2)
-    return (o.id, source, o.kind, round(o.radius, 3), round(whole, 3), spread, round(bound, 2), corners)
+    spread = number(3.0 * sigma, 2)
+    return (o.id, source, o.kind, number(o.radius, 3), number(whole, 3), spread, number(bound, 2), corners)
 
 
 def snapshots_of(log: Log, begin: float, end: float) -> list[Snapshot]:
@@ -327,10 +327,15 @@ def gaps_of(poses: np.ndarray, snapshots: list[Snapshot], body: Body) -> np.ndar
     for source in {s.source for s in snapshots}:
         mine = sorted((s for s in snapshots if s.source == source), key=lambda s: s.t)
         newest = np.searchsorted([s.t for s in mine], poses[:, 0], side="right") - 1
-        pairs = [(i, mine[k], o) for i, k in enumerate(newest) if k >= 0 for o in mine[k].movers]
+        pairs = [(i, mine[k], o) for i, k in enumerate(newest) if k >= 0 for o in mine[k].movers if is_placed(o)]
         if pairs:
             np.fmin.at(gaps, [p[0] for p in pairs], distances(poses, pairs, body))
     return gaps
+
+
+def is_placed(o: obstacle_t) -> bool:
+    flat = [c for corner in o.vertices[: o.num_vertices] for c in corner]
+    return all(math.isfinite(c) for c in (o.x, o.y, o.theta, o.vx, o.vy, o.radius, *flat))
 
 
 def distances(poses: np.ndarray, pairs: list, body: Body) -> np.ndarray:
@@ -380,7 +385,7 @@ def goal_lists_of(log: Log) -> list[dict]:
         key = (m.goal_list_id, m.goal_list_revision)
         if out and out[-1]["key"] == key:
             continue
-        goals = [{"id": g.id, "x": round(g.x, 3), "y": round(g.y, 3), "th": heading(g), "done": None} for g in m.goals]
+        goals = [{"id": g.id, "x": number(g.x, 3), "y": number(g.y, 3), "th": heading(g), "done": None} for g in m.goals]
         out.append({"t": round(t, 3), "key": key, "goals": goals})
     for entry, nxt in zip(out, [*out[1:], None]):
         mark_done(entry, log, nxt["t"] if nxt else math.inf)
@@ -388,7 +393,7 @@ def goal_lists_of(log: Log) -> list[dict]:
 
 
 def heading(g: Any) -> float | None:
-    return None if g.tolerance_theta >= math.pi else round(g.theta, 3)
+    return None if g.tolerance_theta >= math.pi else number(g.theta, 3)
 
 
 def mark_done(entry: dict, log: Log, until: float) -> None:
@@ -422,7 +427,7 @@ def statuses_of(log: Log) -> list[dict]:
 def remaining_of(log: Log) -> dict:
     """Distance and time left as the daemon told them."""
     rows = np.array([(t, s.distance_remaining, s.time_remaining) for t, s in log.of["STATUS"].pairs()]).reshape(-1, 3)
-    rows = np.nan_to_num(rows[thinned(rows[:, 0], 0.15)], posinf=0.0, neginf=0.0)
+    rows = np.nan_to_num(rows[thinned(rows[:, 0], 0.15)], nan=0.0, posinf=0.0, neginf=0.0)
     return {"t": integers(rows[:, 0], 1e3), "m": integers(rows[:, 1], 100), "s": integers(rows[:, 2], 10)}
 
 

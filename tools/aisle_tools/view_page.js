@@ -4,9 +4,10 @@
 const $ = (id) => document.getElementById(id);
 const run = $("run");
 let D; // the run
-const S = { t: 0, playing: false, rate: 1, scale: 40, cx: 0, cy: 0, follow: false, reply: null, last: 0, asked: false };
+const S = { t: 0, playing: false, rate: 1, scale: 40, cx: 0, cy: 0, follow: false, reply: null, mover: null, last: 0, asked: false };
 const C = {}; // colours of the theme
 const STATES = ["idle", "idle", "idle", "idle", "drive", "stop", "held", "fault"];
+const MOVERS = ["unknown mover", "person", "vehicle", "standing thing"];
 const KINDS = ["unknown", "person", "mover", "static"];
 const YIELDING = 301, BLOCKED_BY = 204, TRAIL = 5;
 
@@ -36,8 +37,8 @@ function decodePath(p) {
 }
 
 function decodePoses(q) {
-  const lost = new Set(q.lost);
-  return { t: column(q.t, 1000), x: column(q.x, 1000), y: column(q.y, 1000), th: column(q.th, 1000), v: column(q.v, 1000), lost };
+  const v = column(q.v, 1000);
+  return { t: column(q.t, 1000), x: column(q.x, 1000), y: column(q.y, 1000), th: column(q.th, 1000), v, speed: v.map(Math.abs), lost: new Set(q.lost) };
 }
 
 function decodeSource(s) {
@@ -46,6 +47,20 @@ function decodeSource(s) {
   s.first = new Uint32Array(s.count.length + 1);
   for (let i = 0; i < s.count.length; i++) s.first[i + 1] = s.first[i] + s.count[i];
   for (const key of Object.keys(D.movers.scales)) s[key] = perMover(s.id, s[key], D.movers.scales[key]);
+  s.tracks = tracksOf(s);
+}
+
+// Of each mover its rows and their times.
+function tracksOf(s) {
+  const tracks = new Map();
+  for (let k = 0; k < s.t.length; k++) {
+    for (let row = s.first[k]; row < s.first[k + 1]; row++) {
+      if (!tracks.has(s.id[row])) tracks.set(s.id[row], { t: [], rows: [] });
+      tracks.get(s.id[row]).t.push(s.t[k]);
+      tracks.get(s.id[row]).rows.push(row);
+    }
+  }
+  return tracks;
 }
 
 function perMover(ids, steps, scale) {
@@ -92,8 +107,16 @@ function entryAt(list, t) {
   return found;
 }
 
-const layoutAt = (t) => entryAt(D.layouts, t) || D.layouts[0];
-const bodyAt = (t) => entryAt(D.bodies, t) || D.bodies[0];
+// Of a reply to look at: its own layout and vehicle; else those in force.
+function layoutAt(t) {
+  const own = D.ofQueries && S.reply && D.layouts.find((l) => String(l.key) === String(S.reply.map));
+  return own || entryAt(D.layouts, t) || D.layouts[0];
+}
+
+function bodyAt(t) {
+  const own = D.ofQueries && S.reply && D.bodies.find((b) => b.rev === S.reply.vehicle);
+  return own || entryAt(D.bodies, t) || D.bodies[0];
+}
 
 function poseAt(t) {
   const p = D.run.poses;
@@ -118,12 +141,14 @@ function goalsAt(t) {
 }
 
 // ---- movers
-function eachMover(t, visit) {
+function moversAt(t) {
+  const list = [];
   for (const s of D.movers.sources) {
     const k = before(s.t, t + 1e-6);
     if (k < 0) continue;
-    for (let row = s.first[k]; row < s.first[k + 1]; row++) visit(moverOf(s, k, row, t), s, k);
+    for (let row = s.first[k]; row < s.first[k + 1]; row++) list.push(moverOf(s, k, row, t));
   }
+  return list;
 }
 
 // As measured, and moved on with its speed to t for the eye (at most a second).
@@ -132,15 +157,15 @@ function moverOf(s, k, row, t) {
   const age = Math.max(0, t - s.stamp[k]);
   const on = Math.min(age, 1);
   return {
-    id, source, kind, r, whole, corners, age, x0: s.x[row], y0: s.y[row], x: s.x[row] + on * s.vx[row], y: s.y[row] + on * s.vy[row],
+    from: s, id, source, kind, r, whole, corners, age, bound, x0: s.x[row], y0: s.y[row], x: s.x[row] + on * s.vx[row], y: s.y[row] + on * s.vy[row],
     th: s.theta[row], vx: s.vx[row], vy: s.vy[row], reach: whole + spread + bound * age,
   };
 }
 
-function trailOf(s, k, id, t) {
-  const points = [];
-  for (let j = k; j >= 0 && s.t[j] > t - TRAIL; j--) {
-    for (let row = s.first[j]; row < s.first[j + 1]; row++) if (s.id[row] === id) points.push([s.x[row], s.y[row]]);
+function trailOf(s, id, t) {
+  const track = s.tracks.get(id), points = [];
+  for (let i = before(track.t, t + 1e-6); i >= 0 && track.t[i] > t - TRAIL; i--) {
+    points.push([s.x[track.rows[i]], s.y[track.rows[i]]]);
   }
   return points;
 }
@@ -382,21 +407,18 @@ function drawMargin(ctx, pose, body) {
   ctx.restore();
 }
 
-function drawMovers(ctx, t, blocker) {
-  const list = [];
-  eachMover(t, (m, s, k) => list.push([m, s, k]));
-  if ($("show-reach").checked) for (const [m] of list) drawReach(ctx, m, m.id === blocker);
-  for (const [m, s, k] of list) {
+function drawMovers(ctx, t, movers, blocker) {
+  if ($("show-reach").checked) for (const m of movers) drawReach(ctx, m, m.id === blocker);
+  for (const m of movers) {
     const colour = kindColour(m.kind);
     if ($("show-trails").checked) {
       ctx.globalAlpha = 0.5;
-      strokeLine(ctx, [[m.x, m.y], ...trailOf(s, k, m.id, t)], colour, 1.5);
+      strokeLine(ctx, [[m.x, m.y], ...trailOf(m.from, m.id, t)], colour, 1.5);
       ctx.globalAlpha = 1;
     }
     drawBody(ctx, m.x, m.y, m.th, m.corners, m.r, colour, 0.55);
     if (Math.hypot(m.vx, m.vy) > 0.05) arrow(ctx, m.x, m.y, m.x + m.vx, m.y + m.vy, colour, 2);
   }
-  return list.map(([m]) => m);
 }
 
 function drawReach(ctx, m, isBlocker) {
@@ -486,16 +508,18 @@ function drawScene(now) {
   const body = bodyAt(S.t);
   if (S.reply) {
     drawStops(ctx, S.reply);
+    ctx.globalAlpha = D.ofQueries ? 1 : 0.45;
     drawPath(ctx, S.reply, body.v_max);
+    ctx.globalAlpha = 1;
   }
   if (now.path) drawPath(ctx, now.path, body.v_max);
   drawGoals(ctx, S.t);
-  const movers = drawMovers(ctx, S.t, now.blocker);
-  drawTie(ctx, now.pose, movers, now.blocker);
+  drawMovers(ctx, S.t, now.movers, now.blocker);
+  drawTie(ctx, now.pose, now.movers, now.blocker);
   if (now.pose) drawVehicle(ctx, now.pose, body);
   const ratio = window.devicePixelRatio || 1;
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
-  drawLabels(ctx, S.t, movers);
+  drawLabels(ctx, S.t, now.movers);
   drawScaleBar();
 }
 
@@ -520,15 +544,24 @@ function drawPlot(id, values, times, top, unit, colour, extra) {
   if (extra !== null) dashed(ctx, y(extra), w);
   ctx.strokeStyle = colour;
   ctx.lineWidth = 1.4;
-  ctx.beginPath();
-  trace(ctx, values, times, w, y);
-  ctx.stroke();
+  ctx.stroke(curveOf(id, values, times, w, y));
   caption(ctx, unit);
   cursor(ctx, w, h);
 }
 
-// A line with gaps where nothing is known.
-function trace(ctx, values, times, w, y) {
+const curves = {};
+
+// A line with gaps where nothing is known; made anew only for another run or size.
+function curveOf(id, values, times, w, y) {
+  const key = [w, y(0), y(1), D.run.end].join();
+  if (!curves[id] || curves[id].key !== key || curves[id].values !== values) {
+    curves[id] = { key, values, path: trace(values, times, w, y) };
+  }
+  return curves[id].path;
+}
+
+function trace(values, times, w, y) {
+  const path = new Path2D();
   let open = false;
   for (let i = 0; i < values.length; i++) {
     if (values[i] < 0 || !(values[i] <= 1e9)) {
@@ -536,9 +569,10 @@ function trace(ctx, values, times, w, y) {
       continue;
     }
     const x = timeX(times[i], w);
-    ctx[open ? "lineTo" : "moveTo"](x, y(values[i]));
+    path[open ? "lineTo" : "moveTo"](x, y(values[i]));
     open = true;
   }
+  return path;
 }
 
 function dashed(ctx, y, w) {
@@ -581,7 +615,7 @@ function drawStrip() {
 function drawPlots(now) {
   const p = D.run.poses;
   if (D.ofQueries && !S.reply) return;
-  drawPlot("speed", p.v.map(Math.abs), p.t, 1.15 * Math.max(bodyAt(S.t).v_max, 0.1), "speed, m/s" + (now.pose ? ": " + Math.abs(now.pose.v).toFixed(2) : ""), C.vehicle, null);
+  drawPlot("speed", p.speed, p.t, 1.15 * Math.max(bodyAt(S.t).v_max, 0.1), "speed, m/s" + (now.pose ? ": " + Math.abs(now.pose.v).toFixed(2) : ""), C.vehicle, null);
   if (D.ofQueries) return;
   const gap = now.pose ? D.gap[now.pose.i] : -1;
   drawPlot("gap", D.gap, p.t, 5, "least gap to movers, m" + (gap >= 0 ? ": " + gap.toFixed(2) : "") + " (up to 5)", C.mover, bodyAt(S.t).margin);
@@ -619,6 +653,8 @@ function showFacts(now) {
   }
   if (!D.ofQueries) factsOfRun(list, now);
   if (S.reply) factsOfReply(list, S.reply);
+  const chosen = now.movers.find((m) => m.id === S.mover);
+  if (chosen) factsOfMover(list, chosen, now.pose);
   $("facts").replaceChildren(...list.childNodes);
 }
 
@@ -632,6 +668,12 @@ function factsOfRun(list, now) {
   if (now.path.x) fact(list, "lease", [left > 0 ? left.toFixed(2) + " s left" : "run out", meter(left)]);
   const gap = now.pose ? D.gap[now.pose.i] : -1;
   if (gap >= 0) fact(list, "least gap", gap >= 10 ? "10 m or more" : gap.toFixed(2) + " m");
+}
+
+function factsOfMover(list, m, pose) {
+  const away = pose ? `, ${Math.hypot(m.x - pose.x, m.y - pose.y).toFixed(2)} m away` : "";
+  const measured = `, measured ${m.age.toFixed(2)} s ago`;
+  fact(list, "mover " + m.id, `${MOVERS[m.kind] || "mover"}, ${Math.hypot(m.vx, m.vy).toFixed(2)} of at most ${m.bound.toFixed(2)} m/s${away}${measured}, reach ${m.reach.toFixed(2)} m`);
 }
 
 function factsOfReply(list, r) {
@@ -739,15 +781,14 @@ function drawLegend() {
 
 function legendOfMovers(ring) {
   const kinds = new Set(D.movers.traits.map((t) => t[2]));
-  const names = ["unknown mover", "person", "vehicle", "standing thing"];
-  const items = [...kinds].sort().map((k) => [ring(kindColour(k), kindColour(k)), names[k] || "mover"]);
+  const items = [...kinds].sort().map((k) => [ring(kindColour(k), kindColour(k)), MOVERS[k] || "mover"]);
   return [...items, [ring(C.soft, "none", "3 2"), "where it may be by now"], [ring(C.stop, "none", "3 2"), "the one given way to"]];
 }
 
 // ---- one frame
 function stateAt(t) {
   const path = D.ofQueries ? null : entryAt(D.paths, t), status = entryAt(D.status, t);
-  return { pose: poseAt(t), path, status, blocker: blockerAt(status) };
+  return { pose: poseAt(t), path, status, movers: moversAt(t), blocker: blockerAt(status) };
 }
 
 function causeText(now) {
@@ -830,8 +871,8 @@ function stepPose(way) {
 function choose(reply) {
   S.reply = reply;
   if (D.ofQueries) {
-    const none = { t: [], x: [], y: [], th: [], v: [], lost: new Set() };
-    const poses = reply.x ? { t: reply.at, x: reply.x, y: reply.y, th: reply.th, v: reply.v, lost: new Set() } : none;
+    const none = { t: [], x: [], y: [], th: [], v: [], speed: [], lost: new Set() };
+    const poses = reply.x ? { ...none, t: reply.at, x: reply.x, y: reply.y, th: reply.th, v: reply.v, speed: reply.v } : none;
     D.run = { poses, begin: 0, end: reply.x ? reply.at[reply.at.length - 1] : 0 };
     setRange();
     S.t = 0;
@@ -921,10 +962,19 @@ function wirePointers() {
     if (held.size === 2) zoom(now.d / was.d, now.x, now.y);
   });
   for (const name of ["pointerup", "pointercancel"]) scene.addEventListener(name, (e) => held.delete(e.pointerId));
+  scene.addEventListener("click", (e) => chooseMover(e.offsetX, e.offsetY));
   scene.addEventListener("wheel", (e) => {
     e.preventDefault();
     zoom(Math.exp(-Math.sign(e.deltaY) * Math.min(0.35, Math.abs(e.deltaY) / 400)), e.offsetX, e.offsetY);
   }, { passive: false });
+}
+
+// The mover under the pointer is told of; where there is none, nobody.
+function chooseMover(x, y) {
+  const off = (m) => Math.hypot(sx(m.x) - x, sy(m.y) - y);
+  const hit = moversAt(S.t).filter((m) => off(m) < Math.max(14, m.whole * S.scale)).sort((a, b) => off(a) - off(b))[0];
+  S.mover = hit ? hit.id : null;
+  redraw();
 }
 
 function pan(dx, dy) {

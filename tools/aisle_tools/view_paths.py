@@ -19,6 +19,11 @@ SAME_WAY = 0.02  # m, a path within this of the one before goes the same way
 REST = 1e-6  # m/s
 
 
+def number(value: float, digits: int) -> float:
+    """Rounded; 0 for what is no number, as JSON has none."""
+    return round(value, digits) if math.isfinite(value) else 0.0
+
+
 def integers(values: Sequence[float] | np.ndarray, scale: float) -> list[int]:
     """Differences of the values in units of 1 / scale: small numbers, which compress well."""
     rounded = np.round(np.asarray(values, dtype=float) * scale).astype(np.int64)
@@ -64,7 +69,10 @@ def encode(path: path_t, body: Body, with_pose: bool = False) -> dict:
     """Points of a path; of a refusal, the places that tell its reason."""
     if not names.is_path(path):
         return {"hints": hints_of(path)}
-    rows, at = points_of(path.waypoints[: path.num_waypoints], body.limits)
+    waypoints = path.waypoints[: path.num_waypoints]
+    if not all(math.isfinite(c) for w in waypoints for c in (w.x, w.y, w.theta, w.v, w.t, w.curvature)):
+        return {"hints": None}
+    rows, at = points_of(waypoints, body.limits)
     base = at[min(max(path.num_base, 1), len(at)) - 1]
     out = {"x": integers(rows[:, 0], 1e3), "y": integers(rows[:, 1], 1e3), "v": integers(rows[:, 3], 100), "base": base}
     if with_pose:
@@ -77,15 +85,15 @@ def hints_of(path: path_t) -> dict:
     spot = names.place(path)
     free = names.free_place(path)
     return {
-        "place": [round(c, 3) for c in spot] if spot else None,
-        "free": [round(c, 3) for c in free] if free else None,
-        "gap": [[round(w.x, 3), round(w.y, 3)] for w in names.gap_sides(path)],
-        "without": [[round(w.x, 3), round(w.y, 3), w.goal_id] for w in names.removals(path)],
+        "place": [number(c, 3) for c in spot] if spot else None,
+        "free": [number(c, 3) for c in free] if free else None,
+        "gap": [[number(w.x, 3), number(w.y, 3)] for w in names.gap_sides(path)],
+        "without": [[number(w.x, 3), number(w.y, 3), w.goal_id] for w in names.removals(path)],
     }
 
 
 def line_of(path: path_t) -> shapely.LineString | None:
-    points = [(w.x, w.y) for w in path.waypoints[: path.num_waypoints]]
+    points = [(w.x, w.y) for w in path.waypoints[: path.num_waypoints] if math.isfinite(w.x + w.y)]
     return shapely.LineString(points) if len(points) > 1 and names.is_path(path) else None
 
 
@@ -130,14 +138,16 @@ def result_of(path: path_t, body: Body, with_pose: bool = False) -> dict:
         "cause": path.cause,
         "by": path.cause_id,
         "why": reason_of(path),
-        "length": round(path.length, 2),
-        "duration": round(path.duration, 2),
-        "clearance": round(path.clearance_min, 3),
+        "map": [path.map_id, path.map_revision],
+        "vehicle": path.vehicle_revision,
+        "length": number(path.length, 2),
+        "duration": number(path.duration, 2),
+        "clearance": number(path.clearance_min, 3),
         **encode(path, body, with_pose),
     }
 
 
 def reply_of(reply: path_t, asked: query_t | None, body: Body) -> dict:
     stops = [asked.start, *asked.goals[: asked.num_goals]] if asked is not None else []
-    places = [[round(s.x, 3), round(s.y, 3), round(s.theta, 3)] for s in stops]
-    return {"query": reply.query_id, "stops": places, "bound": round(reply.length_bound, 2), **result_of(reply, body, True)}
+    places = [[number(s.x, 3), number(s.y, 3), number(s.theta, 3)] for s in stops]
+    return {"query": reply.query_id, "stops": places, "bound": number(reply.length_bound, 2), **result_of(reply, body, True)}
