@@ -23,7 +23,7 @@ from aisle import (
     vehicle_t,
     waypoint_t,
 )
-from aisle_tools import cli, layouts, view_log, view_paths
+from aisle_tools import cli, layouts, names, view_log, view_paths
 from aisle_tools.bus import LogWriter
 from aisle_tools.vehicle import body
 from aisle_tools.world import Grid, Polygon, World, float32
@@ -602,4 +602,4 @@ def test_a_revision_tells_what_changed():
     assert view_paths.change_of(revoked, first) == "path revoked"
     assert view_paths.change_of(first, revoked) == "goes on"
     assert view_paths.change_of(make_path(1.0, 5, goals=2), first) == "new goals"
-    assert view_paths.reason_of(revoked) == "nothing to drive: the pose is too old"
+    assert names.path_in_words(revoked) == "nothing to drive: the pose is too old"

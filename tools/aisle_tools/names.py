@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from aisle import path_t, status_t, waypoint_t
+from aisle import obstacle_t, path_t, status_t, waypoint_t
 
 from aisle_tools.errors import UserError
 
@@ -125,6 +125,7 @@ STATE_WORDS = [
     "held by command",
     "fault",
 ]
+MOVERS = {obstacle_t.PERSON: "person", obstacle_t.VEHICLE: "vehicle", obstacle_t.STATIC: "standing thing"}
 CAUSE_WORDS = {
     status_t.NO_LAYOUT: "no layout yet",
     status_t.NO_VEHICLE: "no vehicle yet",
@@ -161,6 +162,15 @@ def cause_in_words(cause: int, ident: int) -> str:
     if cause == 0:
         return ""
     return CAUSE_WORDS.get(cause, cause_name(cause)).format(id=ident, what=what(cause, ident))
+
+
+def path_in_words(path: path_t) -> str:
+    """Status and cause of a path."""
+    why = cause_in_words(path.cause, path.cause_id)
+    if path.status == path_t.NONE:
+        return reason(path) if path.num_waypoints > 0 else f"nothing to drive: {why}" if why else "nothing to drive"
+    text = {path_t.PARTIAL: "a safe part that ends at rest", path_t.STOP: "brake along these points"}.get(path.status, "")
+    return ": ".join(part for part in (text, why) if part) or "free way"
 
 
 def in_words(state: int, cause: int, ident: int) -> str:

@@ -120,15 +120,6 @@ def same_way(new: shapely.LineString, old: shapely.LineString) -> bool:
     return shapely.distance(old, shapely.points(new.coords)).max() < SAME_WAY or new.buffer(SAME_WAY).covers(old)
 
 
-def reason_of(path: path_t) -> str:
-    """Status and cause of a path in words."""
-    why = names.cause_in_words(path.cause, path.cause_id)
-    if path.status == path_t.NONE:
-        return names.reason(path) if path.num_waypoints > 0 else f"nothing to drive: {why}" if why else "nothing to drive"
-    text = {path_t.PARTIAL: "a safe part that ends at rest", path_t.STOP: "brake along these points"}.get(path.status, "")
-    return ": ".join(part for part in (text, why) if part) or "free way"
-
-
 def result_of(path: path_t, body: Body, with_pose: bool = False) -> dict:
     """What the page shows of a path or reply."""
     return {
@@ -137,7 +128,7 @@ def result_of(path: path_t, body: Body, with_pose: bool = False) -> dict:
         "result": names.result_name(path.status),
         "cause": path.cause,
         "by": path.cause_id,
-        "why": reason_of(path),
+        "why": names.path_in_words(path),
         "map": [path.map_id, path.map_revision],
         "vehicle": path.vehicle_revision,
         "length": number(path.length, 2),
