@@ -282,7 +282,7 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
         aisle_outgoing *out = &self->out[kind];
         if (out->waiting) {
             out->waiting = false;
-            aisle_status st = aisle_release((aisle_event_kind)kind, out->bytes, out->size, out->stamp, event);
+            aisle_status st = aisle_release((aisle_event_kind)kind, out->bytes, out->size, out->stamp, out->moving, event);
             AISLE_ASSERT(st == AISLE_OK);
             return true;
         }

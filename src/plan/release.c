@@ -113,12 +113,32 @@ static bool is_revocation(const uint8_t *bytes, size_t size) {
     return bytes[status] == AISLE_PATH_NONE && bytes[count] == 0 && bytes[count + 1] <= AISLE_RELEASE_TOLD_MAX;
 }
 
+static int64_t int64_at(const uint8_t *bytes, size_t at) {
+    uint64_t value = 0;
+    for (size_t i = 0; i < 8; i++) {
+        value = value << 8 | bytes[at + i];
+    }
+    return (int64_t)value;
+}
+
+// May these bytes, proved on the layout, be driven until the lease in them ends?
+static bool is_lease_proved(const uint8_t *bytes, const aisle_stamp *stamp, const aisle_moving_stamp *moving) {
+    if (bytes[AISLE_PATH_AT_STATUS] == AISLE_PATH_STOP) {
+        return true;
+    }
+    return moving != NULL && moving->size == stamp->size && moving->digest == stamp->digest &&
+           int64_at(bytes, AISLE_PATH_AT_VALID_UNTIL_UTIME) <= moving->until_us;
+}
+
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
-                           aisle_event *event) {
+                           const aisle_moving_stamp *moving, aisle_event *event) {
     if (event == NULL || (kind != AISLE_EVENT_PATH && kind != AISLE_EVENT_REPLY)) {
         return AISLE_ERR_ARG;
     }
-    if (!is_proved(bytes, size, stamp) && !is_revocation(bytes, size)) {
+    const bool may_leave = is_proved(bytes, size, stamp)
+                               ? kind == AISLE_EVENT_REPLY || is_lease_proved(bytes, stamp, moving)
+                               : is_revocation(bytes, size);
+    if (!may_leave) {
         return AISLE_ERR_ARG;
     }
     *event = (aisle_event){.kind = kind, .bytes = bytes, .size = size};

@@ -226,6 +226,27 @@ static aisle_verify_fault waypoint_fault(aisle_verify *self, uint32_t i) {
     return goal_fault(self, i);
 }
 
+// Way to rest from v, braking with `down` after AISLE_VERIFY_STOP_TIME.
+static double way_to_rest(double v, double down) {
+    return v * AISLE_VERIFY_STOP_TIME + 0.5 * v * v / down * (1.0 + VERIFY_TOLERANCE) + 1e-3;
+}
+
+// self->piece: the last one.
+static bool only_brakes(const aisle_verify *self) {
+    const aisle_waypoint_msg *w = self->path->waypoints;
+    const aisle_vehicle *vehicle = self->request.vehicle;
+    const double v0 = (double)w[0].v;
+    for (uint32_t i = 1; i < waypoints(self); i++) {
+        const bool turns = has_flag(&w[i - 1], AISLE_WAYPOINT_TURN_IN_PLACE);
+        if ((double)w[i].v > v0 * (1.0 + VERIFY_TOLERANCE) + VERIFY_REST || (turns && waypoints(self) > 2)) {
+            return false;
+        }
+    }
+    const bool turns = self->piece.on_spot && waypoints(self) > 1;
+    return self->s <= way_to_rest(v0, vehicle->d_max) &&
+           (!turns || fabs(self->piece.turn) <= way_to_rest(vehicle->omega_max, vehicle->alpha_max));
+}
+
 static aisle_verify_fault sums_fault(const aisle_verify *self) {
     const aisle_path_msg *path = self->path;
     if (!has_arrived(self)) {
@@ -303,6 +324,9 @@ static aisle_status step_waypoint(aisle_verify *self) {
         return AISLE_BUSY;
     }
     fault = sums_fault(self);
+    if (fault == AISLE_VERIFY_NONE && self->path->status == AISLE_PATH_STOP && !only_brakes(self)) {
+        fault = AISLE_VERIFY_STOP;
+    }
     if (fault != AISLE_VERIFY_NONE) {
         return fail(self, fault, waypoints(self) - 1);
     }

@@ -52,6 +52,9 @@
 // - rest (below 1e-6 m/s) at last waypoint, STOP, both ends of turns, and where REVERSE changes; no faster than v_start at
 //   the first one (which way an OMNI vehicle then moves there only a base tells);
 // - length, duration equal the waypoints' sums; 0 <= length_bound <= length; clearance_min not above any piece's;
+// - STOP only brakes, for it may be sent without a proof among moving obstacles: no waypoint is faster than the first one, a
+//   turn is the whole path, and there is no more way than AISLE_VERIFY_STOP_TIME at the first speed and braking from it with
+//   d_max, in a turn likewise from omega_max with alpha_max (1e-3 m or rad more);
 // - map and vehicle revisions are those proved against; certificate right.
 // Zones, by the motion, not by the heading (REVERSE changes nothing):
 // - SPEED_LIMIT: where a piece may be driven faster than a zone's value (1 + 1e-3), the footprint without its margin is
@@ -85,9 +88,10 @@
 #include "world/collide.h"
 #include "world/layout.h"
 
-#define AISLE_VERIFY_EPSILON 1e-6 // m, for rounding
-#define AISLE_VERIFY_AGAINST 2e-3 // rad beyond a right angle to a DIRECTED zone's direction
-#define AISLE_VERIFY_DEPTH 64     // of the interval stack; 29 halvings reach 1 mm from the longest arc
+#define AISLE_VERIFY_EPSILON 1e-6  // m, for rounding
+#define AISLE_VERIFY_AGAINST 2e-3  // rad beyond a right angle to a DIRECTED zone's direction
+#define AISLE_VERIFY_STOP_TIME 0.5 // s, before a path of status STOP begins to brake
+#define AISLE_VERIFY_DEPTH 64      // of the interval stack; 29 halvings reach 1 mm from the longest arc
 
 // All that a proof's verdict is a function of, as digests. Only verify.c writes one. A path that is given a new head
 // (aisle_path_rehead()) and shown with the basis of its proof is proved by it if every part is the same.
@@ -145,6 +149,7 @@ typedef enum aisle_verify_fault {
     AISLE_VERIFY_CERTIFICATE, // not the crc of these waypoints and revisions
     AISLE_VERIFY_ZONE_SPEED,  // too fast in a SPEED_LIMIT zone
     AISLE_VERIFY_DIRECTION,   // against a DIRECTED zone's direction
+    AISLE_VERIFY_STOP,        // status STOP, but does more than to brake
     AISLE_VERIFY_BASE         // leaves the base, is faster on it, or num_base does not count its waypoints
 } aisle_verify_fault;
 
@@ -153,6 +158,13 @@ typedef struct aisle_stamp {
     uint64_t digest; // of the proved bytes, the lease's two times and work_units taken as 0
     uint32_t size;   // of them; 0: nothing proved
 } aisle_stamp;
+
+// What the proof of a lease leaves behind. Only verify_moving.c writes one; release() checks it.
+typedef struct aisle_moving_stamp {
+    uint64_t digest;  // of the bytes, as aisle_stamp has it
+    uint32_t size;    // of them; 0: nothing proved
+    int64_t until_us; // end of the lease proved
+} aisle_moving_stamp;
 
 typedef struct aisle_verify_piece { // from waypoint i-1 to i; verify_piece.c
     aisle_vec2 from, unit;          // first end; direction of the chord
@@ -248,10 +260,12 @@ const aisle_proof_basis *aisle_verify_basis(const aisle_verify *self);
 
 // The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of
 // status NONE with at most AISLE_RELEASE_TOLD_MAX waypoints (nothing to drive: they tell the reason). utime and
-// valid_until_utime (the lease) and work_units (spent after the proof, too) may have changed since. AISLE_ERR_ARG
-// otherwise, *event untouched.
+// valid_until_utime (the lease) and work_units (spent after the proof, too) may have changed since. A PATH to drive, that is
+// of any other status but STOP, needs the moving stamp of the same bytes, too, and a lease that ends when this one does or
+// before. STOP may always be braked along (it does nothing else, see above), and a REPLY gives no lease. Stamps that are not
+// needed may be NULL. AISLE_ERR_ARG otherwise, *event untouched.
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
-                           aisle_event *event);
+                           const aisle_moving_stamp *moving, aisle_event *event);
 
 // crc32 over the waypoints as encoded (in order), then over path_revision, query_id, goal_list_id,
 // goal_list_revision, map_id, map_revision,

@@ -59,13 +59,6 @@ typedef struct aisle_moving_request {
     double lease; // s, [0, 60]
 } aisle_moving_request;
 
-// What the proof leaves behind. Only verify_moving.c writes one; release() checks it.
-typedef struct aisle_moving_stamp {
-    uint64_t digest;  // of the bytes, as aisle_stamp has it
-    uint32_t size;    // of them; 0: nothing proved
-    int64_t until_us; // now_us + lease
-} aisle_moving_stamp;
-
 // ---- the verifier's own
 
 typedef struct aisle_moving_motion { // along the path; verify_moving_motion.c

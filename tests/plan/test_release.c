@@ -1,6 +1,7 @@
 #include "test_verify_fixture.h"
 
 static aisle_event event;
+static aisle_moving_stamp moving;
 static const aisle_event untouched = {AISLE_EVENT_REPLY, NULL, 77};
 
 static void proved_path(void) {
@@ -9,11 +10,12 @@ static void proved_path(void) {
     path_arc(0.5, 1.0);
     path_end();
     TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+    moving = (aisle_moving_stamp){stamp.digest, stamp.size, 2000}; // the lease of the fixture
 }
 
 static aisle_status release(void) {
     event = untouched;
-    return aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, &event);
+    return aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, &moving, &event);
 }
 
 static void assert_refused(void) {
@@ -34,11 +36,59 @@ static void test_the_bytes_that_were_proved_leave(void) {
     TEST_ASSERT_EQUAL(AISLE_EVENT_PATH, event.kind);
     TEST_ASSERT_EQUAL_PTR(path_bytes, event.bytes);
     TEST_ASSERT_EQUAL_size_t(path_size, event.size);
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_REPLY, path_bytes, path_size, &stamp, &event));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_REPLY, path_bytes, path_size, &stamp, NULL, &event));
     TEST_ASSERT_EQUAL(AISLE_EVENT_REPLY, event.kind);
 }
 
+static void test_a_path_to_drive_needs_the_proof_of_its_lease(void) {
+    const aisle_moving_stamp right = moving;
+    const int8_t status[2] = {AISLE_PATH_OK, AISLE_PATH_PARTIAL};
+    for (int i = 0; i < 2; i++) {
+        path.status = status[i];
+        path_seal();
+        TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+        moving = (aisle_moving_stamp){stamp.digest, right.size, right.until_us};
+        TEST_ASSERT_EQUAL(AISLE_OK, release());
+        moving.digest ^= 1U;
+        assert_refused();
+        moving = (aisle_moving_stamp){stamp.digest, right.size - 1U, right.until_us};
+        assert_refused();
+        moving = (aisle_moving_stamp){0, 0, 0};
+        assert_refused();
+        event = untouched;
+        TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
+        TEST_ASSERT_EQUAL_MEMORY(&untouched, &event, sizeof event);
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_REPLY, path_bytes, path_size, &stamp, NULL, &event));
+    }
+}
+
+static void test_no_lease_ends_later_than_the_proved_one(void) {
+    const int64_t ends[5] = {moving.until_us, 0, -1, INT64_MIN, INT64_MAX};
+    for (int i = 0; i < 5; i++) {
+        aisle_msg_put_int64(path_bytes + AISLE_PATH_AT_VALID_UNTIL_UTIME, ends[i]);
+        moving.until_us = ends[i];
+        TEST_ASSERT_EQUAL(AISLE_OK, release());
+        if (ends[i] > INT64_MIN) {
+            moving.until_us = ends[i] - 1;
+            assert_refused();
+        }
+    }
+}
+
+static void test_a_path_that_only_brakes_needs_no_lease(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_turn(0.1);
+    path_end();
+    path.status = AISLE_PATH_STOP;
+    path_seal();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
+    stamp.digest ^= 1U;
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
+}
+
 static void test_a_renewed_lease_leaves(void) {
+    moving.until_us = INT64_MAX;
     const char *names[2] = {"utime", "valid_until_utime"};
     for (int i = 0; i < 2; i++) {
         size_t offset = 0;
@@ -53,6 +103,7 @@ static void test_any_other_byte_changed_stays(void) {
     TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "utime", &utime));
     TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "valid_until_utime", &until));
     TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "work_units", &units));
+    moving.until_us = INT64_MAX;
     for (size_t i = 0; i < path_size; i++) {
         bool lease = (i >= utime && i < utime + 8) || (i >= until && i < until + 8) || (i >= units && i < units + 4);
         path_bytes[i] ^= 0x10U;
@@ -82,9 +133,9 @@ static void test_without_a_stamp_nothing_to_drive_leaves(void) {
     stamp = (aisle_stamp){right.digest, right.size + 1U};
     assert_refused();
     event = untouched;
-    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &event));
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &moving, &event));
     TEST_ASSERT_EQUAL_MEMORY(&untouched, &event, sizeof event);
-    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, NULL, path_size, &right, &event));
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, NULL, path_size, &right, &moving, &event));
 }
 
 static void test_a_refused_path_gets_no_stamp_that_releases_it(void) {
@@ -100,7 +151,7 @@ static void test_a_revocation_needs_no_stamp(void) {
     path.cause = AISLE_STATUS_NO_PATH;
     path_seal();
     event = untouched;
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &event));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, NULL, &moving, &event));
     TEST_ASSERT_EQUAL_size_t(path_size, event.size);
     stamp = (aisle_stamp){0, 0};
     TEST_ASSERT_EQUAL(AISLE_OK, release());
@@ -203,6 +254,9 @@ int main(void) {
     RUN_TEST(test_places_in_the_bytes_are_the_codec_s);
     RUN_TEST(test_a_new_head_is_all_that_differs);
     RUN_TEST(test_the_bytes_that_were_proved_leave);
+    RUN_TEST(test_a_path_to_drive_needs_the_proof_of_its_lease);
+    RUN_TEST(test_no_lease_ends_later_than_the_proved_one);
+    RUN_TEST(test_a_path_that_only_brakes_needs_no_lease);
     RUN_TEST(test_a_renewed_lease_leaves);
     RUN_TEST(test_any_other_byte_changed_stays);
     RUN_TEST(test_other_sizes_stay);

@@ -146,6 +146,79 @@ static void test_an_omni_vehicle_may_begin_in_motion_to_any_side(void) {
     TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified_in_motion(NULL));
 }
 
+// ---- status STOP
+
+// From 0.8 m/s on for `on` s, then down to rest.
+static void stopping_path(double v, double on) {
+    path_begin(0.0, 0.0, 0.0);
+    if (on > 0.0) {
+        path_line(v * on);
+    }
+    path_line(0.5 * v * v / vehicle.d_max);
+    path_end();
+    path.waypoints[0].v = (float)v;
+    path.waypoints[path.num_waypoints - 2].v = (float)v;
+    path.status = AISLE_PATH_STOP;
+    path.num_base = path.num_waypoints;
+    v_start = (double)(float)v;
+    path_retime(0.2);
+    path_seal();
+}
+
+static void assert_stop(aisle_verify_fault fault) {
+    path_seal();
+    path.status = AISLE_PATH_PARTIAL;
+    path_seal();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified_in_motion(NULL));
+    path.status = AISLE_PATH_STOP;
+    path_seal();
+    TEST_ASSERT_EQUAL(fault, verified_in_motion(NULL));
+}
+
+static void test_a_stop_brakes_within_half_a_second(void) {
+    stopping_path(0.8, 0.0);
+    assert_stop(AISLE_VERIFY_NONE);
+    stopping_path(0.8, 0.1);
+    assert_stop(AISLE_VERIFY_NONE);
+    stopping_path(0.8, 0.499);
+    assert_stop(AISLE_VERIFY_NONE);
+    stopping_path(0.8, 0.51);
+    assert_stop(AISLE_VERIFY_STOP);
+    TEST_ASSERT_EQUAL_UINT32(2, verify.fault_waypoint);
+}
+
+static void test_a_stop_never_gets_faster(void) {
+    stopping_path(0.8, 0.4);
+    path.waypoints[0].v = 0.78F;
+    path_retime(0.2);
+    assert_stop(AISLE_VERIFY_STOP);
+    path_begin(0.0, 0.0, 0.0); // sets out from rest
+    path_line(0.01);
+    path_end();
+    v_start = 0.0;
+    assert_stop(AISLE_VERIFY_STOP);
+    path_begin(0.0, 0.0, 0.0); // stands
+    path_end();
+    assert_stop(AISLE_VERIFY_NONE);
+}
+
+static void test_a_stop_in_a_turn_is_that_turn_s_rest(void) {
+    const double most = 0.5 + 0.5 / vehicle.alpha_max; // omega_max is 1 rad/s
+    path_begin(0.0, 0.0, 0.0);
+    path_turn(most);
+    path_end();
+    assert_stop(AISLE_VERIFY_NONE);
+    path_begin(0.0, 0.0, 0.0);
+    path_turn(-most - 0.01);
+    path_end();
+    assert_stop(AISLE_VERIFY_STOP);
+    path_begin(0.0, 0.0, 0.0);
+    path_turn(0.1);
+    path_turn(0.1);
+    path_end();
+    assert_stop(AISLE_VERIFY_STOP);
+}
+
 // ---- the curve
 
 static void test_what_is_left_of_the_path_under_way_keeps_its_base(void) {
@@ -288,7 +361,7 @@ static void test_a_path_that_ends_on_the_base_keeps_it(void) {
     path_line(1.0);
     path_line(0.7);
     end_gently(0.5);
-    path.status = AISLE_PATH_STOP;
+    path.status = AISLE_PATH_PARTIAL;
     path.num_base = 3;
     assert_with_base(AISLE_VERIFY_NONE);
     assert_counts(3, 3);
@@ -419,7 +492,7 @@ static void test_a_turn_may_come_to_rest_before_its_end(void) {
     path_begin(1.0, 0.0, 0.5);
     path_turn(0.3);
     path_end();
-    path.status = AISLE_PATH_STOP;
+    path.status = AISLE_PATH_PARTIAL;
     path.num_base = 2;
     assert_with_base(AISLE_VERIFY_NONE);
     assert_counts(2, 2);
@@ -853,6 +926,9 @@ int main(void) {
     RUN_TEST(test_a_stop_a_turn_or_a_lone_waypoint_does_not_begin_in_motion);
     RUN_TEST(test_a_start_in_motion_is_held_to_every_limit);
     RUN_TEST(test_an_omni_vehicle_may_begin_in_motion_to_any_side);
+    RUN_TEST(test_a_stop_brakes_within_half_a_second);
+    RUN_TEST(test_a_stop_never_gets_faster);
+    RUN_TEST(test_a_stop_in_a_turn_is_that_turn_s_rest);
     RUN_TEST(test_what_is_left_of_the_path_under_way_keeps_its_base);
     RUN_TEST(test_a_micrometre_aside_on_the_base_is_seen);
     RUN_TEST(test_another_way_beyond_the_base_is_free);

@@ -539,6 +539,27 @@ static void test_a_real_speed_above_the_path_s_asks_more(void) {
     assert_refused();
 }
 
+// It comes to rest where the path does, though it is too fast for it, and sets out from rest again.
+static void test_a_speed_that_is_too_much_ends_where_the_path_rests(void) {
+    path_begin(0.0, 0.0, 0.0);
+    path_line(1.0);
+    path_line(3.0);
+    path_end();
+    path.waypoints[1].flags |= AISLE_WAYPOINT_STOP;
+    path_drive_gently(0.8);
+    path.waypoints[1].v = 0.0F;
+    path_retime(0.3);
+    path_seal();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
+    ask(1.0);
+    asked.at_u = 0.97;
+    asked.v = 0.6;
+    (void)add_mover(1.0 + 0.65 + 0.1 + 0.3 + 0.6, 0.0, 0.3, 0.0);
+    assert_proved();
+    mover[0].at.x -= 0.5;
+    assert_refused();
+}
+
 // Too slow, it is later where others come.
 static void test_a_real_speed_below_the_path_s_is_later(void) {
     asked.at_piece = 2;
@@ -783,7 +804,13 @@ static void test_a_path_that_is_not_in_the_bytes_is_refused(void) {
             *w = was;
         }
     }
+    asked.at_piece = 10;
+    path.waypoints[10].theta += 1e-12; // the last one
+    (void)add_mover(19.0, 2.0, 0.3, 0.0);
+    assert_unfit();
+    path.waypoints[10].theta -= 1e-12;
     path.num_waypoints--;
+    asked.at_piece = 2;
     assert_unfit();
     path.num_waypoints++;
     asked.size = 100;
@@ -1148,6 +1175,7 @@ int main(int argc, char **argv) {
     RUN_TEST(test_a_shorter_lease_asks_less);
     RUN_TEST(test_a_longer_reaction_or_softer_brakes_ask_more);
     RUN_TEST(test_a_real_speed_above_the_path_s_asks_more);
+    RUN_TEST(test_a_speed_that_is_too_much_ends_where_the_path_rests);
     RUN_TEST(test_a_real_speed_below_the_path_s_is_later);
     RUN_TEST(test_a_wait_ahead_is_waited);
     RUN_TEST(test_a_turn_needs_room_for_its_corners);
