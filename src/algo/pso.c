@@ -191,6 +191,19 @@ static void move(aisle_pso *self, uint32_t particle) {
     }
 }
 
+// Where the particle goes after it was looked at; true: it is looked at again at once.
+static bool go_on(aisle_pso *self, uint32_t particle, bool allowed) {
+    const bool again = !allowed && self->tries < self->cfg->relocate;
+    if (again || !is_allowed(self->best_cost)) {
+        draw(self, particle);
+    } else {
+        move(self, particle);
+    }
+    self->tries = again ? (uint16_t)(self->tries + 1U) : 0U;
+    self->relocations += again ? 1U : 0U;
+    return again;
+}
+
 static aisle_status verdict(const aisle_pso *self) {
     const aisle_pso_config *cfg = self->cfg;
     if (is_allowed(self->best_cost) && self->best_cost.violation <= 0.0F && self->best_cost.value <= cfg->value_goal) {
@@ -207,13 +220,11 @@ aisle_status aisle_pso_step(aisle_pso *self, uint32_t evals) {
     for (uint32_t spent = 0; spent < evals && self->ended == AISLE_BUSY; spent++) {
         const uint32_t particle = self->next;
         AISLE_ASSERT(particle < self->cfg->particles);
-        learn(self, particle, ask(self, x_of(self, particle)));
-        if (is_allowed(self->best_cost)) {
-            move(self, particle);
-        } else {
-            draw(self, particle);
+        const aisle_pso_cost cost = ask(self, x_of(self, particle));
+        learn(self, particle, cost);
+        if (!go_on(self, particle, is_allowed(cost))) {
+            self->next = (uint16_t)((particle + 1U) % self->cfg->particles);
         }
-        self->next = (uint16_t)((particle + 1U) % self->cfg->particles);
         self->ended = verdict(self);
     }
     return self->ended;
@@ -244,8 +255,9 @@ bool aisle_pso_invariants_hold(const aisle_pso *self) {
     }
     const aisle_pso_config *cfg = self->cfg;
     if (self->next >= cfg->particles || self->evals > cfg->eval_max || self->nan_costs > self->evals ||
-        self->best_updates > self->evals || self->last_improvement > self->evals ||
-        is_allowed(self->best_cost) != (self->best_updates > 0) || self->ended != verdict(self)) {
+        self->best_updates > self->evals || self->last_improvement > self->evals || self->relocations > self->evals ||
+        self->tries > cfg->relocate || is_allowed(self->best_cost) != (self->best_updates > 0) ||
+        self->ended != verdict(self)) {
         return false;
     }
     for (uint32_t i = 0; i < cfg->dim; i++) {

@@ -10,6 +10,8 @@
 // evaluation, not after each round); until the swarm has seen an allowed point its particles are drawn anew;
 // costs are pairs, compared first by violation, then by value (feasibility first: Deb 2000), never added up.
 // The first particle starts at the caller's guess, so the result is never worse than the guess.
+// Relocation (Islam et al. 2013): with cfg->relocate a particle that came to a place not allowed is drawn anew, at rest,
+// and looked at again at once, so that none is lost; so many times in a row at most, each an evaluation.
 //
 // Memory: none allocated. The caller owns self, cfg, lo, hi, guess and work until the run ends.
 // Time: start() O(particles * dim); step() O(evals * dim) plus `evals` calls of cost(). No recursion. Objects share
@@ -64,6 +66,7 @@ typedef struct aisle_pso_config {
     float value_goal;     // stop when feasible at or below it; -INFINITY = use up eval_max
     uint16_t dim;         // [1, AISLE_PSO_DIM_MAX]
     uint16_t particles;   // [2, AISLE_PSO_PARTICLES_MAX]
+    uint16_t relocate;    // times a particle not allowed where it is is drawn anew before it flies on; 0 = never
 } aisle_pso_config;
 
 // Public so that it can be a static variable. Read the counters; write nothing.
@@ -72,9 +75,11 @@ typedef struct aisle_pso {
     float *work;
     aisle_rng rng;
     uint32_t evals, nan_costs, best_updates; // counters since start()
+    uint32_t relocations;                    // likewise
     uint32_t last_improvement;               // evals at that time
     aisle_pso_cost best_cost;                // both INFINITY until an allowed point was seen
     uint16_t next;                           // particle to evaluate next
+    uint16_t tries;                          // times it has been relocated in a row
     aisle_status ended;                      // AISLE_BUSY while running
 } aisle_pso;
 

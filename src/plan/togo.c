@@ -11,6 +11,8 @@
 #define WORTH_SHARE 1.5 // of the start's cost, how far the search goes on
 #define WORTH_MORE 10.0 // m, and beyond
 
+static const int DX[8] = {1, 0, -1, 0, 1, -1, -1, 1}, DY[8] = {0, 1, 0, -1, 1, 1, -1, -1}; // straight ones first
+
 void aisle_togo_carve(aisle_togo *self, aisle_arena *arena, uint32_t cells) {
     self->capacity = cells / AISLE_TOGO_SHARE + 256U;
     self->cost = (uint16_t *)aisle_arena_take(arena, self->capacity, sizeof(uint16_t));
@@ -56,7 +58,38 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of,
     self->at = self->cells = 0;
     self->limit = AISLE_TOGO_NONE - DIAGONAL;
     self->start = cell_of(self, start);
-    reach(self, cell_of(self, goal), 0);
+    self->goal = cell_of(self, goal);
+    reach(self, self->goal, 0);
+}
+
+static aisle_vec2 centre_of(const aisle_togo *self, uint32_t ix, uint32_t iy) {
+    const aisle_lattice *lattice = &self->grid->lattice;
+    return aisle_vec2_of(lattice->x0 + ((double)ix + 0.5) * self->size, lattice->y0 + ((double)iy + 0.5) * self->size);
+}
+
+static void close_cell(aisle_togo *self, uint32_t cell) {
+    if (cell == self->start) {
+        return;
+    }
+    if (cell == self->goal) {
+        memset(self->count, 0, sizeof self->count);
+        self->goal = UINT32_MAX;
+    }
+    self->cost[cell] = 0; // nothing is nearer: never entered
+}
+
+void aisle_togo_close(aisle_togo *self, aisle_vec2 a, aisle_vec2 b, double radius) {
+    const aisle_aabb box = {{aisle_min(a.x, b.x) - radius, aisle_min(a.y, b.y) - radius},
+                            {aisle_max(a.x, b.x) + radius, aisle_max(a.y, b.y) + radius}};
+    const uint32_t lo = cell_of(self, box.lo), hi = cell_of(self, box.hi);
+    for (uint32_t iy = lo / self->w; iy <= hi / self->w; iy++) {
+        for (uint32_t ix = lo % self->w; ix <= hi % self->w; ix++) {
+            const aisle_vec2 c = centre_of(self, ix, iy);
+            if (aisle_segment_gap(a, b, c, c) < radius) {
+                close_cell(self, iy * self->w + ix);
+            }
+        }
+    }
 }
 
 static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
@@ -75,11 +108,9 @@ static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
 }
 
 static void expand(aisle_togo *self, uint32_t cell) {
-    static const int dx[8] = {1, 0, -1, 0, 1, -1, -1, 1};
-    static const int dy[8] = {0, 1, 0, -1, 1, 1, -1, -1};
     uint32_t ix = cell % self->w, iy = cell / self->w;
     for (int k = 0; k < 8; k++) {
-        uint32_t nx = ix + (uint32_t)dx[k], ny = iy + (uint32_t)dy[k]; // below 0 wraps to beyond w
+        uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
         uint32_t cost = self->at + (k < 4 ? STRAIGHT : DIAGONAL);
         if (nx < self->w && ny < self->h && cost < self->cost[ny * self->w + nx] && is_open(self, nx, ny)) {
             reach(self, ny * self->w + nx, cost);
@@ -121,6 +152,25 @@ aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) 
 }
 
 double aisle_togo_at(const aisle_togo *self, aisle_vec2 p) {
-    uint16_t cost = self->cost[cell_of(self, p)];
-    return cost == AISLE_TOGO_NONE ? (double)INFINITY : (double)cost * self->size / STRAIGHT;
+    const uint32_t cell = cell_of(self, p);
+    const uint16_t cost = self->cost[cell];
+    const bool closed = cost == 0U && cell != self->goal;
+    return cost == AISLE_TOGO_NONE || closed ? (double)INFINITY : (double)cost * self->size / STRAIGHT;
+}
+
+bool aisle_togo_next(const aisle_togo *self, aisle_vec2 p, aisle_vec2 *next) {
+    const uint32_t cell = cell_of(self, p), ix = cell % self->w, iy = cell / self->w;
+    uint32_t least = self->cost[cell]; // NONE is the largest
+    bool found = false;
+    for (uint32_t k = 0; k < 8U; k++) {
+        const uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
+        const uint32_t at = nx < self->w && ny < self->h ? ny * self->w + nx : cell;
+        const bool closed = self->cost[at] == 0U && at != self->goal;
+        if (!closed && self->cost[at] < least) {
+            least = self->cost[at];
+            *next = centre_of(self, nx, ny);
+            found = true;
+        }
+    }
+    return found;
 }

@@ -4,6 +4,7 @@
 // hold the disc (optimistic, so that no place the body can be in is closed), steps of 5 and 7 to the side and diagonally
 // (Borgefors 1986, the chamfer 5-7-11 without its last step): at most 8 % too long. Dijkstra's search with a ring of
 // buckets (Dial 1969), outwards from the goal until the start is reached and as far beyond as a way may be worth it.
+// Places may be closed besides what the grid says (movers that stand in the way): cells whose centre is in them.
 // A guide for searches: neither a bound nor a proof.
 // Memory: 2 bytes a cell of its own, one for 16 planning cells, and 0.5 MiB. Time: O(cells reached), sliced.
 #ifndef AISLE_PLAN_TOGO_H
@@ -18,14 +19,14 @@
 
 typedef struct aisle_togo {
     const aisle_grid *grid;
-    uint16_t *cost;  // [capacity], 5 a cell; AISLE_TOGO_NONE: not reached
+    uint16_t *cost;  // [capacity], 5 a cell; AISLE_TOGO_NONE: not reached; 0: the goal's, or closed
     uint32_t *queue; // [AISLE_TOGO_RING * room]
     uint32_t room;   // cells in one of its buckets
     uint32_t count[AISLE_TOGO_RING];
     uint32_t capacity, stride, w, h; // stride: planning cells along one of its own
     double size;                     // m, side of a cell
     uint32_t open_from;              // least field value of an open planning cell
-    uint32_t at, limit, start;       // cost under way; where it ends; the start's cell
+    uint32_t at, limit, start, goal; // cost under way; where it ends; the cells of start and goal
     uint32_t cells;                  // looked at
 } aisle_togo;
 
@@ -37,9 +38,16 @@ void aisle_togo_carve(aisle_togo *self, aisle_arena *arena, uint32_t cells);
 // Begins; reach: m, radius of the disc and its margin.
 void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach, aisle_vec2 start, aisle_vec2 goal);
 
+// Between start() and the first step(): closes all that is less than `radius` (m) from the segment a b, but for the
+// start's own cell. The goal's cell closed: nothing is reached. O(cells of the segment's box).
+void aisle_togo_close(aisle_togo *self, aisle_vec2 a, aisle_vec2 b, double radius);
+
 // AISLE_BUSY; AISLE_OK: the start is reached; AISLE_PARTIAL: it is not. A unit for 32 cells.
 aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent);
 
 // About the way from p to the goal, m; INFINITY where the search did not come.
 double aisle_togo_at(const aisle_togo *self, aisle_vec2 p);
+
+// Centre of the neighbouring cell that is nearest to the goal, if any is nearer than p's own; false: none. O(1).
+bool aisle_togo_next(const aisle_togo *self, aisle_vec2 p, aisle_vec2 *next);
 #endif

@@ -631,6 +631,29 @@ static void test_bits_are_those_of_every_other_board(void) {
     TEST_ASSERT_EQUAL_HEX32(0x5AA716EF, crc);
 }
 
+// Allowed is a tenth of the box only.
+static aisle_pso_cost slit(void *ctx, const float *x) {
+    const aisle_pso_cost cost = bowl(ctx, x);
+    return x[0] > 0.2F && x[0] < 0.4F ? cost : (aisle_pso_cost){INFINITY, INFINITY};
+}
+
+static void test_a_particle_not_allowed_is_drawn_anew_at_once(void) {
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        cfg.cost = slit;
+        cfg.seed = seed;
+        cfg.relocate = 5;
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_pso_start(&pso, &cfg, work, work_len));
+        uint16_t before = pso.next;
+        while (aisle_pso_step(&pso, 1) == AISLE_BUSY) {
+            TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
+            TEST_ASSERT_TRUE(pso.next == before ? pso.tries > 0U : pso.tries == 0U);
+            before = pso.next;
+        }
+        TEST_ASSERT_TRUE(pso.relocations > 0U && pso.relocations < pso.evals);
+        TEST_ASSERT_NOT_NULL(aisle_pso_best(&pso));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_minimum_on_the_wall_is_found_for_200_of_200_seeds);
@@ -668,5 +691,6 @@ int main(void) {
     RUN_TEST(test_never_started_answers_so);
     RUN_TEST(test_invariants_notice_spoilt_fields);
     RUN_TEST(test_bits_are_those_of_every_other_board);
+    RUN_TEST(test_a_particle_not_allowed_is_drawn_anew_at_once);
     return UNITY_END();
 }

@@ -83,11 +83,47 @@ static void test_a_map_of_more_cells_than_it_holds_is_seen_coarser(void) {
     TEST_ASSERT_DOUBLE_WITHIN(0.15 * way, way, aisle_togo_at(&togo, aisle_vec2_of(2.0, 2.0)));
 }
 
+static aisle_status search_closed(aisle_vec2 a, aisle_vec2 b, double radius) {
+    const aisle_vec2 start = {2.0, 2.0}, goal = {18.0, 3.0};
+    aisle_status st;
+    uint32_t spent = 0;
+    aisle_togo_start(&togo, aisle_layout_grid(&hall_layout), 0.5, start, goal);
+    aisle_togo_close(&togo, a, b, radius);
+    while ((st = aisle_togo_step(&togo, 1000, &spent)) == AISLE_BUSY) {
+    }
+    return st;
+}
+
+static void test_places_closed_are_gone_round(void) {
+    const aisle_vec2 start = {2.0, 2.0};
+    TEST_ASSERT_EQUAL(AISLE_OK, search_closed(aisle_vec2_of(19.5, 11.5), aisle_vec2_of(19.5, 11.5), 0.1));
+    const double open = aisle_togo_at(&togo, start);
+    TEST_ASSERT_EQUAL(AISLE_OK, search_closed(aisle_vec2_of(6.0, 0.0), aisle_vec2_of(6.0, 9.0), 1.0));
+    TEST_ASSERT_TRUE(aisle_togo_at(&togo, start) > open + 0.5);
+    TEST_ASSERT_FALSE(aisle_togo_at(&togo, aisle_vec2_of(6.0, 5.0)) < (double)INFINITY);
+    aisle_vec2 p = start, last = start;
+    for (int i = 0; i < 400 && aisle_togo_next(&togo, p, &p); i++, last = p) {
+        TEST_ASSERT_TRUE(aisle_togo_at(&togo, p) < aisle_togo_at(&togo, last));
+        TEST_ASSERT_TRUE(hall_point_segment(p, aisle_vec2_of(6.0, 0.0), aisle_vec2_of(6.0, 9.0)) >= 1.0);
+    }
+    TEST_ASSERT_TRUE(aisle_togo_at(&togo, p) <= 0.0); // it came to the goal's cell
+}
+
+static void test_a_shut_way_and_a_shut_goal_are_not_reached(void) {
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, search_closed(aisle_vec2_of(10.0, 9.0), aisle_vec2_of(10.0, 12.0), 1.0));
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, search_closed(aisle_vec2_of(18.0, 3.0), aisle_vec2_of(18.0, 3.0), 0.4));
+    TEST_ASSERT_FALSE(aisle_togo_at(&togo, aisle_vec2_of(18.0, 3.0)) < (double)INFINITY);
+    TEST_ASSERT_EQUAL(AISLE_OK,
+                      search_closed(aisle_vec2_of(2.0, 2.0), aisle_vec2_of(2.0, 2.0), 0.1)); // the start's own
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_it_is_the_way_within_a_tenth_and_two_cells);
     RUN_TEST(test_what_the_disc_cannot_reach_is_infinite);
     RUN_TEST(test_slices_change_nothing);
     RUN_TEST(test_a_map_of_more_cells_than_it_holds_is_seen_coarser);
+    RUN_TEST(test_places_closed_are_gone_round);
+    RUN_TEST(test_a_shut_way_and_a_shut_goal_are_not_reached);
     return UNITY_END();
 }
