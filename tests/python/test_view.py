@@ -518,6 +518,29 @@ def test_what_is_no_number_does_no_harm(browser, tmp_path):
     assert browser.errors == []
 
 
+def test_a_number_used_again_belongs_to_the_query_before(tmp_path):
+    log = LogWriter(ask(tmp_path / "asked.log"), "AISLE")
+    query = query_t()
+    query.query_id, query.num_goals, query.goals = 1, 1, [goal_t()]
+    query.goals[0].x = 3.0
+    write(log, 4.0, "QUERY", query)
+    reply = make_path(0.0, 0)
+    reply.query_id = 1
+    write(log, 4.1, "REPLY", reply)
+    log.close()
+    found = data_of(view(tmp_path / "asked.log"))["replies"]
+    assert [(r["query"], r["stops"][1][0]) for r in found] == [(1, 12.0), (2, 12.0), (1, 3.0)]
+
+
+def test_a_refusal_tells_place_and_remedy_in_words():
+    path = make_path(0.0, 1, path_t.NONE, status_t.GOAL_OCCUPIED, 5)
+    path.waypoints, path.num_waypoints, path.cause_value = [waypoint_t(), waypoint_t()], 2, 0.25
+    path.waypoints[1].x = 0.25
+    told = "no room at the goal, by polygon 5, at (0.00, 0.00), move 0.250 m to (0.250, 0.000)"
+    assert names.path_in_words(path) == told
+    assert view_paths.hints_of(path) == {"place": [0.0, 0.0], "free": [0.25, 0.0], "gap": [], "without": []}
+
+
 def test_a_reply_is_shown_on_the_map_it_was_asked_on(browser, tmp_path):
     log = LogWriter(ask(tmp_path / "asked.log"), "AISLE")
     empty = World("second", (0.0, 0.0, 40.0, 10.0))

@@ -91,9 +91,9 @@ def rounded_up(value: float) -> float:
     return math.ceil(value * 1e3 - 1e-6) / 1e3
 
 
-def reason(path: path_t) -> str:
-    """Why there is no path, in words."""
-    text = cause_name(path.cause)
+def reason(path: path_t, cause: str = "") -> str:
+    """Why there is no path, in words; `cause` in place of the constant's name."""
+    text = cause or cause_name(path.cause)
     sides = gap_sides(path)
     if len(sides) == 2:
         text += f", gap of {path.cause_value:.3f} m between {' and '.join(obstacle(w.goal_id) for w in sides)}"
@@ -142,7 +142,7 @@ CAUSE_WORDS = {
     status_t.CLOCK_JUMP: "the clock jumped",
     status_t.START_OCCUPIED: "no room where the vehicle stands, {what}",
     status_t.GOAL_OCCUPIED: "no room at the goal, {what}",
-    status_t.GOAL_OUTSIDE: "{what} is outside the layout",
+    status_t.GOAL_OUTSIDE: "goal {id} is outside the layout",
     status_t.NO_PATH: "there is no way, proved",
     status_t.BLOCKED_BY: "the way is blocked by mover {id}",
     status_t.TOO_NARROW: "a gap is too narrow, {what}",
@@ -168,7 +168,8 @@ def path_in_words(path: path_t) -> str:
     """Status and cause of a path."""
     why = cause_in_words(path.cause, path.cause_id)
     if path.status == path_t.NONE:
-        return reason(path) if path.num_waypoints > 0 else f"nothing to drive: {why}" if why else "nothing to drive"
+        head = CAUSE_WORDS.get(path.cause, "").replace(", {what}", "").format(id=path.cause_id)
+        return reason(path, head) if path.num_waypoints > 0 else f"nothing to drive: {why}" if why else "nothing to drive"
     text = {path_t.PARTIAL: "a safe part that ends at rest", path_t.STOP: "brake along these points"}.get(path.status, "")
     return ": ".join(part for part in (text, why) if part) or "free way"
 

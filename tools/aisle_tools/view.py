@@ -79,7 +79,7 @@ def collect(log: Log, args: argparse.Namespace) -> dict[str, Any]:
     body = bodies[-1][1]
     poses, localized = view_log.poses_of(log, begin, end)
     snapshots = view_log.snapshots_of(log, begin, end)
-    replies = [reply_of(r, asked_by(log, r.query_id), body) for r in log.of["REPLY"].msg]
+    replies = [reply_of(r, asked_by(log, r.query_id, t), body) for t, r in log.of["REPLY"].pairs()]
     paths = view_log.paths_of(log, body, begin, end)
     if len(poses) == 0 and not replies and not paths:
         raise UserError(f"{log.path}: neither poses nor paths nor replies of prefix {args.prefix}: nothing to play")
@@ -107,8 +107,10 @@ def encode_gaps(gaps: np.ndarray) -> list[int]:
     return integers(np.where(np.isnan(gaps), -0.01, np.minimum(gaps, GAP_SHOWN)), 100)
 
 
-def asked_by(log: Log, ident: int) -> Any:
-    return next((q for q in reversed(log.of["QUERY"].msg) if q.query_id == ident), None)
+def asked_by(log: Log, ident: int, t: float) -> Any:
+    """The last query of this id before the reply; numbers may come again."""
+    asked = [q for asked_at, q in log.of["QUERY"].pairs() if q.query_id == ident and asked_at <= t]
+    return asked[-1] if asked else None
 
 
 def bodies_of(log: Log, args: argparse.Namespace) -> list[tuple[float, Body, int]]:

@@ -124,7 +124,7 @@ function poseAt(t) {
   if (i < 0) return null;
   const pose = { i, t: p.t[i], x: p.x[i], y: p.y[i], th: p.th[i], v: p.v[i], lost: p.lost.has(i) };
   const gap = p.t[i + 1] - p.t[i];
-  if (!(gap < 1)) return pose;
+  if (!(gap < (D.ofQueries ? Infinity : 1))) return pose; // poses that stay away are not made up
   const f = (t - p.t[i]) / gap;
   for (const k of ["x", "y", "th", "v"]) pose[k] += f * (p[k][i + 1] - p[k][i]);
   return pose;
@@ -318,17 +318,29 @@ function drawOldPaths(ctx, t) {
 
 function drawPath(ctx, path, vMax) {
   if (!path.x) return drawHints(ctx, path.hints);
-  ctx.lineCap = "round";
-  for (let i = 1; i < path.x.length; i++) {
-    const base = i <= path.base;
-    ctx.strokeStyle = speedColour((path.v[i - 1] + path.v[i]) / 2 / vMax);
-    ctx.lineWidth = px(base ? 7 : 3.5);
-    ctx.beginPath();
-    ctx.moveTo(path.x[i - 1], path.y[i - 1]);
-    ctx.lineTo(path.x[i], path.y[i]);
-    ctx.stroke();
+  path.strokes = path.strokes || strokesOf(path, vMax);
+  ctx.lineCap = ctx.lineJoin = "round";
+  for (const s of path.strokes) {
+    ctx.strokeStyle = speedColour(s.share);
+    ctx.lineWidth = px(s.base ? 7 : 3.5);
+    ctx.stroke(s.line);
   }
   if (path.status === 1 || path.status === 2) drawEnd(ctx, path);
+}
+
+// Stretches of nearly one speed, of the base and of the rest.
+function strokesOf(path, vMax) {
+  const out = [];
+  for (let i = 1; i < path.x.length; i++) {
+    const base = i <= path.base, share = Math.round((20 * (path.v[i - 1] + path.v[i])) / 2 / vMax) / 20;
+    let s = out[out.length - 1];
+    if (!s || s.base !== base || s.share !== share) {
+      out.push((s = { base, share, line: new Path2D() }));
+      s.line.moveTo(path.x[i - 1], path.y[i - 1]);
+    }
+    s.line.lineTo(path.x[i], path.y[i]);
+  }
+  return out;
 }
 
 function drawEnd(ctx, path) {

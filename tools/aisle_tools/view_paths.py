@@ -47,7 +47,9 @@ def points_of(waypoints: Sequence[waypoint_t], limits: dict[str, float]) -> tupl
     at = [0]
     for a, b in zip(waypoints, waypoints[1:]):
         piece = geometry.piece(a, b)
-        count = max(1, math.ceil(piece.length / STEP), math.ceil(abs(piece.turn) / TURN_STEP))
+        count = max(1, math.ceil(abs(piece.turn) / TURN_STEP))
+        if piece.curvature != 0.0 or abs(a.v - b.v) > REST or abs(a.v) <= REST:  # else both ends tell all
+            count = max(count, math.ceil(piece.length / STEP))
         parts = np.arange(1, count + 1) / count
         v = speeds_along(a, b, piece.length, parts, limits) if piece.length > 0.0 else np.zeros(count)
         times = times_along(a, b, np.concatenate([[abs(a.v)], v]))
