@@ -10,7 +10,9 @@ are the scenario's; of the random ones, start and goal have a heading but for a 
 
 Peers: OMPL with the exact footprint tested every 5 cm, on the first --peer-legs legs, with the headings of Aisle's answer:
 RRTConnect, BIT*, and BIT* over ways of Reeds and Shepp (1.5 m). Time and length of the first path and of what there is
-after --cap s of processor time; each is looked at every centimetre by the same checker. Optional, as in peers.py.
+after --cap s of processor time; each is looked at every centimetre by the same checker. The first two move over SE(2) in
+any direction whatever the heading, as no vehicle with this drive can: so of paths that are shorter than Aisle's it is told
+how many do without slipping sideways. Optional, as in peers.py.
 --check: exit 1 if a leg that has a way is refused or a path is not clear.
 """
 
@@ -38,6 +40,7 @@ SHIFT = 1.0  # m, what its hall reaches beyond the scenario's bounds
 SPARE = 2e-3  # m, that no stop is nearer to being in contact
 INNER = 0.45  # m, radius of the disc inside the body
 RADIUS_MIN = 1.5  # m, of the peer that steers as a car
+SLIP, SLIP_LENGTH = math.radians(5.0), 0.05  # rad, m: what a vehicle that cannot move sideways may seem to
 PLANNERS = ("RRTConnect", "BITstar", "ReedsShepp")
 
 
@@ -177,6 +180,15 @@ def peer_lines(args: argparse.Namespace, scenario: Scenario, planner: str, answe
     return " ".join(repr(w) if isinstance(w, float) else str(w) for w in words) + "\n"
 
 
+def slipped(poses: np.ndarray) -> float:
+    """m, that the origin moves at more than SLIP off the heading, forwards or backwards."""
+    way = np.diff(poses[:, :2], axis=0)
+    heading = poses[:-1, 2] + 0.5 * np.angle(np.exp(1j * np.diff(poses[:, 2])))
+    along = way[:, 0] * np.cos(heading) + way[:, 1] * np.sin(heading)
+    across = way[:, 1] * np.cos(heading) - way[:, 0] * np.sin(heading)
+    return float(np.hypot(*way.T)[np.abs(across) > math.tan(SLIP) * np.abs(along)].sum())
+
+
 def print_peers(
     args: argparse.Namespace, program: Path, scenario: Scenario, msg: object, legs: list, answers: list, bounds: list[float]
 ) -> None:
@@ -188,7 +200,7 @@ def print_peers(
         f"{offline.median(own):.4f}, worst {max(own):.3f}; all clear"
     )
     for planner in PLANNERS:
-        first_ms, first, last, unclear, none, beaten = [], [], [], 0, 0, 0
+        first_ms, first, last, unclear, none, beaten, driven = [], [], [], 0, 0, 0, 0
         for i, (answer, bound) in enumerate(asked):
             told = peers.call([program], peer_lines(args, scenario, planner, answer, i + 1))
             if told["first_ms"] is None:
@@ -199,11 +211,13 @@ def print_peers(
             last.append(told["last"] / bound)
             gaps = [obstacles.clearances(body, np.array(told[k])).min() for k in ("first_poses", "last_poses")]
             unclear += min(gaps) < -1e-6
-            beaten += told["last"] < answer.reply.length * (1.0 - 1e-6) and gaps[1] >= -1e-6
+            shorter = told["last"] < answer.reply.length * (1.0 - 1e-6) and gaps[1] >= -1e-6
+            beaten += shorter
+            driven += shorter and slipped(np.array(told["last_poses"])) <= SLIP_LENGTH
         print(
             f"  OMPL {planner}: first path ms median {offline.median(first_ms):.2f}, p99 {p99(first_ms):.0f}, length / "
             f"bound {offline.median(first):.3f}; after {args.cap:g} s {offline.median(last):.4f}; none in time {none}; "
-            f"not clear {unclear}; clear and shorter than aisle {beaten}"
+            f"not clear {unclear}; clear and shorter than aisle {beaten}, of these without slipping sideways {driven}"
         )
         sys.stdout.flush()
 
