@@ -608,6 +608,7 @@ def test_speeds_between_waypoints_are_those_of_the_wire_convention():
     assert rows[at[1], 3] == pytest.approx(V)
     half = rows[np.searchsorted(rows[:, 0], 10.5)]
     assert half[3] == pytest.approx(V * math.sqrt((12.0 - half[0]) / 3.0))
+    assert view_paths.encode(path, body(vehicle_t()))["base"] == at[1]  # two waypoints of it are the base
     begin, end = path.waypoints[1].t, path.waypoints[2].t
     assert half[4] == pytest.approx(begin + (end - begin) * (1.0 - half[3] / V), abs=0.03 * (end - begin))
     assert (np.diff(rows[:, 4]) > 0.0).all() and rows[-1, 4] == pytest.approx(end)
