@@ -30,14 +30,22 @@ static void carve_path(aisle_drive_path *path, aisle_arena *arena) {
 }
 
 void aisle_drive_carve(aisle_drive *self, aisle_arena *arena) {
-    carve_path(&self->plan, arena);
-    carve_path(&self->out, arena);
-    carve_path(&self->next, arena);
-    self->out.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
-    self->next.bytes = (uint8_t *)aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
-    self->head = (aisle_path_msg *)aisle_arena_take(arena, 1U, offsetof(aisle_path_msg, waypoints));
-    aisle_pace_carve(&self->pace, arena);
-    self->decoded = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    aisle_drive_path path;
+    memset(&path, 0, sizeof path);
+    carve_path(self != NULL ? &self->plan : &path, arena);
+    carve_path(self != NULL ? &self->out : &path, arena);
+    carve_path(self != NULL ? &self->next : &path, arena);
+    void *out = aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    void *next = aisle_arena_take(arena, AISLE_ROUTE_BYTES, 1U);
+    void *head = aisle_arena_take(arena, 1U, offsetof(aisle_path_msg, waypoints));
+    aisle_pace_carve(self != NULL ? &self->pace : NULL, arena);
+    void *decoded = aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    if (self != NULL) {
+        self->out.bytes = (uint8_t *)out;
+        self->next.bytes = (uint8_t *)next;
+        self->head = (aisle_path_msg *)head;
+        self->decoded = (aisle_path_msg *)decoded;
+    }
 }
 
 // ---- the plan

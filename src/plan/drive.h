@@ -103,6 +103,7 @@ typedef struct aisle_drive {
     uint32_t spent; // work units, since they were last taken
 } aisle_drive;
 
+// `self` may be NULL, to measure only, as in route.h.
 void aisle_drive_carve(aisle_drive *self, aisle_arena *arena);
 
 // The plan becomes a path proved from where the vehicle stands; nothing of it is out until a cycle says so. goals: of its

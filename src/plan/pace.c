@@ -14,10 +14,16 @@
 #define AHEAD 0.1       // m, of the front beyond what can matter
 
 void aisle_pace_carve(aisle_pace *self, aisle_arena *arena) {
-    self->front = (aisle_waypoint_msg *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_waypoint_msg));
-    self->dwell = (float *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
-    self->front_dwell = (float *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
-    self->most = (float *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    void *front = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_waypoint_msg));
+    void *dwell = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    void *front_dwell = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    void *most = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    if (self != NULL) {
+        self->front = (aisle_waypoint_msg *)front;
+        self->dwell = (float *)dwell;
+        self->front_dwell = (float *)front_dwell;
+        self->most = (float *)most;
+    }
 }
 
 double aisle_pace_cap(const aisle_vehicle *vehicle, uint32_t level) {

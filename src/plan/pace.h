@@ -87,6 +87,7 @@ typedef struct aisle_pace {
     aisle_band band;
 } aisle_pace;
 
+// `self` may be NULL, to measure only.
 void aisle_pace_carve(aisle_pace *self, aisle_arena *arena);
 
 // m/s; INFINITY at level 0, 0 at AISLE_PACE_STOP.

@@ -29,44 +29,57 @@ static bool resolve_limits(aisle_limits *limits) {
 
 // Closes a row of the memory table: everything taken since the last one.
 static void row(aisle_planner *self, const aisle_arena *arena, size_t *from, const char *name) {
-    AISLE_ASSERT(self->row_count < AISLE_MEMORY_ROWS);
-    self->rows[self->row_count++] = (aisle_memory_row){.name = name, .bytes = arena->used - *from};
+    if (self != NULL) {
+        AISLE_ASSERT(self->row_count < AISLE_MEMORY_ROWS);
+        self->rows[self->row_count++] = (aisle_memory_row){.name = name, .bytes = arena->used - *from};
+    }
     *from = arena->used;
 }
 
-// One walk for measuring and carving. The planner and the structs with carve functions of their own come first, so that
-// in a measuring walk stand-ins on the caller's side take the pointers; the route, too large for the stack, needs none.
-typedef struct stand_ins {
-    aisle_planner planner;
-    aisle_layout layout;
-} stand_ins;
+static void carve_answers(aisle_planner *self, aisle_arena *arena) {
+    void *vehicle_msg = aisle_arena_take(arena, 1U, sizeof(aisle_vehicle_msg));
+    void *head = aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    void *first = aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
+    void *second = aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
+    if (self != NULL) {
+        self->vehicle_msg = (aisle_vehicle_msg *)vehicle_msg;
+        self->head = (aisle_path_msg *)head;
+        self->refusal[0] = (uint8_t *)first;
+        self->refusal[1] = (uint8_t *)second;
+    }
+}
 
-static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits, stand_ins *instead) {
+// One walk for measuring and carving. While measuring there is no planner (NULL), and what is small stands in for its
+// parts: the whole would be too large for the stack.
+static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits) {
     size_t from = 0;
+    aisle_layout layout_instead;
+    aisle_movers movers_instead;
+    memset(&layout_instead, 0, sizeof layout_instead);
+    memset(&movers_instead, 0, sizeof movers_instead);
     aisle_planner *self = (aisle_planner *)aisle_arena_take(arena, 1U, sizeof(aisle_planner));
     aisle_layout *layout = (aisle_layout *)aisle_arena_take(arena, 1U, sizeof(aisle_layout));
     aisle_route *route = (aisle_route *)aisle_arena_take(arena, 1U, sizeof(aisle_route));
-    self = self != NULL ? self : &instead->planner;
-    self->layout = layout != NULL ? layout : &instead->layout;
-    self->route = route;
     row(self, arena, &from, "planner");
-    aisle_layout_carve(self->layout, arena, limits);
+    aisle_layout_carve(layout != NULL ? layout : &layout_instead, arena, limits);
     row(self, arena, &from, "layout and grid");
     aisle_route_carve(route, arena, limits);
     row(self, arena, &from, "search and paths");
     aisle_route_carve_cache(route, arena, limits);
     row(self, arena, &from, "remembered paths");
-    self->queue = (aisle_request *)aisle_arena_take(arena, limits->requests, sizeof(aisle_request));
+    void *queue = aisle_arena_take(arena, limits->requests, sizeof(aisle_request));
     row(self, arena, &from, "requests");
-    self->vehicle_msg = (aisle_vehicle_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_vehicle_msg));
-    self->head = (aisle_path_msg *)aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
-    self->refusal[0] = (uint8_t *)aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
-    self->refusal[1] = (uint8_t *)aisle_arena_take(arena, AISLE_REFUSAL_BYTES, 1U);
+    carve_answers(self, arena);
     row(self, arena, &from, "answers");
-    aisle_movers_carve(&self->movers, arena);
+    aisle_movers_carve(self != NULL ? &self->movers : &movers_instead, arena);
     row(self, arena, &from, "moving obstacles");
-    aisle_drive_carve(&self->drive, arena);
+    aisle_drive_carve(self != NULL ? &self->drive : NULL, arena);
     row(self, arena, &from, "path under way");
+    if (self != NULL) {
+        self->layout = layout;
+        self->route = route;
+        self->queue = (aisle_request *)queue;
+    }
     return self;
 }
 
@@ -78,10 +91,8 @@ size_t aisle_planner_memsize(const aisle_limits *limits) {
     if (!resolve_limits(&resolved)) {
         return 0;
     }
-    stand_ins instead;
-    memset(&instead, 0, sizeof instead);
     aisle_arena arena = aisle_arena_measure();
-    (void)carve(&arena, &resolved, &instead);
+    (void)carve(&arena, &resolved);
     return arena.overflow ? 0 : arena.used;
 }
 
@@ -102,7 +113,7 @@ aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *c
     aisle_limits limits = config->limits;
     bool in_range = resolve_limits(&limits);
     aisle_arena arena = aisle_arena_over(memory, need);
-    aisle_planner *self = carve(&arena, &limits, NULL);
+    aisle_planner *self = carve(&arena, &limits);
     AISLE_ASSERT(in_range && !arena.overflow && arena.used == need);
     self->config = *config;
     self->config.limits = limits;
@@ -282,7 +293,8 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
         aisle_outgoing *out = &self->out[kind];
         if (out->waiting) {
             out->waiting = false;
-            aisle_status st = aisle_release((aisle_event_kind)kind, out->bytes, out->size, out->stamp, out->moving, event);
+            aisle_status st =
+                aisle_release((aisle_event_kind)kind, out->bytes, out->size, out->stamp, out->moving, event);
             AISLE_ASSERT(st == AISLE_OK);
             return true;
         }
