@@ -11,6 +11,7 @@
 #include "daemon/log.h"
 #include "plan/pace.h"
 #include "plan/pace_predict.h"
+#include "plan/verify_moving.h"
 #include "wire/codec.h"
 #include "world/collide.h"
 #include "world/layout.h"
@@ -366,6 +367,47 @@ static void one_prediction(uint32_t i) {
     (void)aisle_pace_predict_step(&predict, UINT32_MAX, &spent);
 }
 
+static aisle_path_msg driven;
+static size_t driven_size;
+static aisle_verify_moving proof;
+static uint32_t proof_units, refused;
+
+static void make_driven(void) {
+    memcpy(driven.waypoints, way, sizeof way);
+    driven.num_waypoints = WAY + 1;
+    if (aisle_path_encode(&driven, bytes, sizeof bytes, &driven_size) != AISLE_OK) {
+        abort();
+    }
+}
+
+static void one_moving_proof(uint32_t i) {
+    seen.mover = walkers[i % HALLS];
+    const aisle_moving_request request = {.vehicle = &vehicle,
+                                          .movers = &seen,
+                                          .bytes = bytes,
+                                          .size = driven_size,
+                                          .path = &driven,
+                                          .at_piece = 10,
+                                          .at_u = 0.5,
+                                          .v = (double)way[10].v,
+                                          .lease = 1.0};
+    aisle_moving_stamp stamp;
+    aisle_verify_moving_start(&proof, &request);
+    refused += aisle_verify_moving_step(&proof, UINT32_MAX, &proof_units, &stamp) == AISLE_OK ? 0U : 1U;
+}
+
+static void print_moving_proofs(void) {
+    make_driven();
+    for (uint32_t count = 1; count <= AISLE_OBSTACLES_MAX_OBSTACLES; count *= 4U) {
+        seen.count = count;
+        refused = proof_units = 0;
+        const double one = best_of(one_moving_proof, 160);
+        (void)printf("proof of a lease of 1 s among %3u movers    %7.1f us (%u units, refused in %2u of %d halls)\n",
+                     (unsigned)count, 1e6 * one, (unsigned)(proof_units / (ROUNDS * 160U)),
+                     (unsigned)(refused / (ROUNDS * 10U)), HALLS);
+    }
+}
+
 static void print_paces(void) {
     make_way();
     make_walkers();
@@ -413,6 +455,7 @@ int main(int argc, char **argv) {
     (void)printf("decoding a layout_t of %6zu bytes         %7.1f us\n", encoded, 1e6 * best_of(one_decode, 1000));
     (void)printf("sine and cosine                            %7.1f ns\n", 1e9 * best_of(one_sincos, 1000000));
     print_paces();
+    print_moving_proofs();
     free(block);
     free(occupied);
     free(bare);
