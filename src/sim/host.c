@@ -52,20 +52,24 @@ int64_t aisle_sim_host_wall_us(void) {
     return clock_us(CLOCK_MONOTONIC);
 }
 
+int64_t aisle_sim_host_cpu_us(void) {
+    return clock_us(CLOCK_THREAD_CPUTIME_ID);
+}
+
 typedef struct stopwatch {
     int64_t wall_us, cpu_us, paths;
 } stopwatch;
 
 static stopwatch start_watch(const aisle_sim_host *self) {
-    return (stopwatch){clock_us(CLOCK_MONOTONIC), clock_us(CLOCK_THREAD_CPUTIME_ID), self->heard_paths};
+    return (stopwatch){aisle_sim_host_wall_us(), aisle_sim_host_cpu_us(), self->heard_paths};
 }
 
 static void stop_watch(aisle_sim_host *self, const stopwatch *from) {
-    int64_t wall = clock_us(CLOCK_MONOTONIC) - from->wall_us;
+    int64_t wall = aisle_sim_host_wall_us() - from->wall_us;
     aisle_histogram_add(&self->work, wall);
     if (self->heard_paths > from->paths) {
         aisle_histogram_add(&self->answers, wall);
-        aisle_histogram_add(&self->answers_cpu, clock_us(CLOCK_THREAD_CPUTIME_ID) - from->cpu_us);
+        aisle_histogram_add(&self->answers_cpu, aisle_sim_host_cpu_us() - from->cpu_us);
     }
 }
 

@@ -51,6 +51,7 @@ typedef struct aisle_sim_host {
     uint32_t units_per_ms; // 0: planning takes no time
     aisle_record record;
     aisle_sim_post waiting;    // inputs that the planner does not take yet
+    int64_t spent_us;          // of processor time, since the last path
     int64_t clock_us, free_us; // how far it is worked; when the step under way ends
     bool idle;
     // bus
@@ -60,7 +61,7 @@ typedef struct aisle_sim_host {
     uint32_t burst;                          // messages sent without a pause
     aisle_sim_sent sent[AISLE_SIM_SENT_MAX]; // the last inputs that paths name
     uint32_t num_sent;
-    // both: us of the work that brought a path (core, at once), or from an input's sending to the first path that rests on
+    // all: us of the work that brought a path (core; at a speed: of the steps since the last one, in processor time), or from an input's sending to the first path that rests on
     // it (bus)
     aisle_histogram answers;
     aisle_histogram answers_cpu; // core: the same in processor time, which others on the machine do not stretch
@@ -87,6 +88,7 @@ void aisle_sim_host_advance(aisle_sim_host *self, int64_t utime);
 
 // Files of this module alone.
 int64_t aisle_sim_host_wall_us(void); // of the computer, monotonic
+int64_t aisle_sim_host_cpu_us(void);  // processor time of this thread
 void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                               size_t size);
 void aisle_sim_host_bus_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,

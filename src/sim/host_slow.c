@@ -16,6 +16,11 @@ static void pull(aisle_sim_host *self, int64_t utime) {
     aisle_event event;
     while (aisle_planner_next_event(self->engine.planner, &event)) {
         aisle_channel channel = event.kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY;
+        if (channel == AISLE_CHANNEL_PATH) {
+            aisle_histogram_add(&self->answers, self->spent_us);
+            aisle_histogram_add(&self->answers_cpu, self->spent_us);
+            self->spent_us = 0;
+        }
         aisle_record_message(&self->record, utime, channel, event.bytes, event.size);
         self->heard(self->ctx, channel, utime, event.bytes, event.size);
     }
@@ -46,9 +51,11 @@ static void step(aisle_sim_host *self) {
     uint32_t units = self->units_per_ms * SLICE_US / 1000U;
     units = units > 0 ? units : 1U;
     aisle_record_step(&self->record, self->clock_us, units);
-    int64_t start = aisle_sim_host_wall_us();
+    int64_t start = aisle_sim_host_cpu_us();
     self->idle = aisle_planner_step(self->engine.planner, self->clock_us, units) == AISLE_OK;
-    aisle_histogram_add(&self->work, aisle_sim_host_wall_us() - start);
+    int64_t took = aisle_sim_host_cpu_us() - start;
+    self->spent_us += took;
+    aisle_histogram_add(&self->work, took);
     self->free_us = self->clock_us + SLICE_US;
     pull(self, self->free_us);
 }

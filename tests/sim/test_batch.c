@@ -28,8 +28,22 @@ static void test_without_care_movers_are_hit_and_the_hall_is_not(void) {
 }
 
 static void test_with_care_none_is(void) {
-    run(&batch, AISLE_SIM_KIND_COUNT, 1, 8, false);
+    run(&batch, AISLE_SIM_PERSON, 1, 20, false); // the same drives
     TEST_ASSERT_EQUAL_INT64(0, batch.collisions + batch.hall_collisions);
+    TEST_ASSERT_TRUE(batch.met > 50 && batch.arrived >= 5 && batch.revisions > 100);
+}
+
+static void test_nor_when_things_go_wrong_and_planning_takes_time(void) {
+    aisle_sim_batch_start(&batch, AISLE_SIM_KIND_COUNT, 100);
+    batch.encounters = INT64_MAX;
+    batch.episodes = 10;
+    batch.faults = true;
+    batch.units_per_ms = 500;
+    FILE *out = tmpfile();
+    TEST_ASSERT_TRUE(aisle_sim_batch_run(&batch, out));
+    (void)fclose(out);
+    TEST_ASSERT_EQUAL_INT64(0, batch.collisions + batch.hall_collisions);
+    TEST_ASSERT_TRUE(batch.met > 10);
 }
 
 static void test_parts_of_a_batch_add_up_to_the_whole(void) {
@@ -69,6 +83,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_without_care_movers_are_hit_and_the_hall_is_not);
     RUN_TEST(test_with_care_none_is);
+    RUN_TEST(test_nor_when_things_go_wrong_and_planning_takes_time);
     RUN_TEST(test_parts_of_a_batch_add_up_to_the_whole);
     RUN_TEST(test_it_ends_with_the_encounters_wanted);
     return UNITY_END();
