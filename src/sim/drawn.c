@@ -187,7 +187,7 @@ static bool draw_stops(aisle_sim_drawn *self, aisle_rng *rng) {
 }
 
 static void draw_setup(aisle_sim_setup *setup, uint64_t seed, aisle_sim_kind kind, uint32_t num_movers,
-                       aisle_rng *rng) {
+                       double reaction_time, aisle_rng *rng) {
     *setup = aisle_sim_setup_usual(seed);
     setup->num_groups = 1;
     setup->group[0] =
@@ -203,6 +203,7 @@ static void draw_setup(aisle_sim_setup *setup, uint64_t seed, aisle_sim_kind kin
     setup->source.period = draw(rng, 0.05, 0.1);
     setup->source.sigma = draw(rng, 0.0, 0.06);
     setup->source.lost = draw(rng, 0.0, 0.05);
+    setup->latency = draw(rng, 0.02, reaction_time - 0.02); // with the control's period just what the vehicle promises
     setup->time_limit = 120.0;
     setup->few_are_good = true;
 }
@@ -213,7 +214,7 @@ void aisle_sim_draw(aisle_sim_drawn *self, uint64_t seed, aisle_sim_kind kind, u
         draw_vehicle(&self->vehicle, &rng);
         draw_hall(&self->layout, &rng);
     } while (!draw_stops(self, &rng));
-    draw_setup(&self->setup, seed, kind, num_movers, &rng);
+    draw_setup(&self->setup, seed, kind, num_movers, (double)self->vehicle.reaction_time, &rng);
 }
 
 void aisle_sim_draw_faults(aisle_sim_drawn *self) {

@@ -2,7 +2,7 @@
 //
 // Halls of 14 to 24 m: open ones with some boxes, clutter of convex polygons, rack aisles, rooms with doors. Vehicles:
 // discs, AGVs that turn on the spot, forklifts with their origin at the rear axle, tricycles that cannot turn on the
-// spot; speeds of 0.6 to 2 m/s, braking 0.4 to 2 m/s2. One to three goals, some with a heading or a dwell. Every stop has
+// spot; speeds of 0.6 to 2 m/s, braking 0.4 to 2 m/s2; drives that are as late as their reaction time allows. One to three goals, some with a heading or a dwell. Every stop has
 // room for the turning body. What is drawn is a function of seed and kind alone.
 // Memory: the struct. Time: below a millisecond.
 #ifndef AISLE_SIM_DRAWN_H
