@@ -14,6 +14,7 @@ void aisle_sim_driver_start(aisle_sim_driver *self, const aisle_vehicle *vehicle
     memset(self, 0, sizeof *self);
     self->vehicle = vehicle;
     self->ahead = ahead;
+    self->share = 1.0;
 }
 
 void aisle_sim_driver_take_goals(aisle_sim_driver *self, const aisle_goal_list_msg *list) {
@@ -262,7 +263,7 @@ static aisle_sim_command drive(aisle_sim_driver *self, const aisle_sim_estimate 
     double then = speed_ahead(self, aisle_max(speed * self->ahead, 0.01), &curvature);
     out.curvature = steer(self, at, curvature);
     if (!brake && !self->arriving) {
-        double v = aisle_min(here, then);
+        double v = self->share * aisle_min(here, then);
         v = to_rest(self) > AISLE_SIM_DRIVER_REACHED ? aisle_max(v, AISLE_SIM_DRIVER_CRAWL) : v;
         out.v = motion_sign(self, self->piece) * v;
     }

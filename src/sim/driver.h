@@ -33,6 +33,7 @@ typedef struct aisle_sim_estimate { // what the vehicle believes of itself
 
 typedef struct aisle_sim_driver {
     const aisle_vehicle *vehicle;
+    double share; // of the speeds told that it drives, 1 but for a fault
     double ahead; // s, latency and lag of the drives, as their maker says
     aisle_path_msg path;
     bool has_path;

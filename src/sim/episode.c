@@ -332,6 +332,9 @@ static void control(aisle_sim_episode *self) {
         free(letter.bytes);
     }
     if (self->tick % CONTROL_TICKS == 0) {
+        const aisle_sim_fault *slow =
+            aisle_sim_faults_active(&self->setup.faults, AISLE_SIM_SLOW, aisle_sim_episode_seconds(self));
+        self->driver.share = slow != NULL ? slow->amount : 1.0;
         aisle_sim_command command = aisle_sim_driver_step(&self->driver, self->now_us, &at);
         aisle_sim_chassis_command(&self->chassis, &command);
     }

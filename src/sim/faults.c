@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const char *const names[AISLE_SIM_FAULT_COUNT] = {"pose_silent", "unlocalized", "pose_jump", "obstacles_silent",
-                                                         "paths_lost",  "push",        "hold"};
+                                                         "paths_lost",  "push",        "slow",      "hold"};
 
 const char *aisle_sim_fault_name(aisle_sim_fault_kind kind) {
     return names[kind];
@@ -55,12 +55,14 @@ bool aisle_sim_faults_read(aisle_sim_faults *self, const char *text) {
 }
 
 void aisle_sim_faults_draw(aisle_sim_faults *self, aisle_rng *rng, uint32_t count, double span) {
-    static const aisle_sim_fault_kind kinds[] = {AISLE_SIM_POSE_SILENT, AISLE_SIM_UNLOCALIZED,
-                                                 AISLE_SIM_OBSTACLES_SILENT, AISLE_SIM_PATHS_LOST, AISLE_SIM_HOLD};
+    static const aisle_sim_fault_kind kinds[] = {
+        AISLE_SIM_POSE_SILENT, AISLE_SIM_UNLOCALIZED, AISLE_SIM_OBSTACLES_SILENT,
+        AISLE_SIM_PATHS_LOST,  AISLE_SIM_SLOW,        AISLE_SIM_HOLD};
     for (uint32_t i = 0; i < count && self->count < AISLE_SIM_FAULTS_MAX; i++) {
         aisle_sim_fault_kind kind = kinds[aisle_rng_below(rng, sizeof kinds / sizeof kinds[0])];
         double at = aisle_sim_uniform(rng, 1.0, span);
-        add(self, kind, at, aisle_sim_uniform(rng, 0.2, 3.0), 0.0);
+        double lasts = aisle_sim_uniform(rng, 0.2, 3.0);
+        add(self, kind, at, lasts, kind == AISLE_SIM_SLOW ? aisle_sim_uniform(rng, 0.1, 0.9) : 0.0);
     }
 }
 

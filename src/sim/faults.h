@@ -6,6 +6,7 @@
 //     obstacles_silent  no source tells of anything
 //     paths_lost        no path arrives at the vehicle
 //     push              the vehicle is shoved `amount` m to its left at once
+//     slow              the vehicle drives at `amount` of the speeds told, as when its scanner slows it down (0..1)
 //     hold              COMMAND HOLD, RESUME when it is over
 //
 // The answer to a fault is the first path message of status STOP or NONE from its beginning on.
@@ -28,6 +29,7 @@ typedef enum aisle_sim_fault_kind {
     AISLE_SIM_OBSTACLES_SILENT,
     AISLE_SIM_PATHS_LOST,
     AISLE_SIM_PUSH,
+    AISLE_SIM_SLOW,
     AISLE_SIM_HOLD,
     AISLE_SIM_FAULT_COUNT
 } aisle_sim_fault_kind;

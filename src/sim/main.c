@@ -33,7 +33,7 @@ static const char help[] =
     "  --sources N     1 to 4 sources share the movers\n"
     "  --faults LIST   KIND:AT:LASTS[:AMOUNT],...; kinds: pose_silent, unlocalized, pose_jump, obstacles_silent, "
     "paths_lost,\n"
-    "                  push, hold. With --drawn and --batch: any word, and they are drawn\n"
+    "                  push, slow, hold. With --drawn and --batch: any word, and they are drawn\n"
     "  --script LOG    goal lists, commands, layouts and patches for later: an event's time after the log's first one "
     "is\n"
     "                  its time after the goals\n"

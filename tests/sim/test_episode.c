@@ -183,8 +183,9 @@ static void test_a_push_is_steered_away(void) {
 
 static void test_every_fault_reaches_the_drive(void) {
     double plain = drive_with(""), way = episode.judge.way;
-    static const char *const faults[] = {"pose_silent:5:3", "unlocalized:5:3", "pose_jump:5:3:0.3",   "paths_lost:5:3",
-                                         "push:5:0:0.1",    "hold:5:3",        "obstacles_silent:1:9"};
+    static const char *const faults[] = {"pose_silent:5:3", "unlocalized:5:3",     "pose_jump:5:3:0.3",
+                                         "paths_lost:5:3",  "push:5:0:0.1",        "hold:5:3",
+                                         "slow:5:3:0.4",    "obstacles_silent:1:9"};
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         double late = drive_with(faults[i]);
         bool counts = strncmp(faults[i], "obstacles", 9) != 0; // without movers nobody need mind that
