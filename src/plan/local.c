@@ -50,8 +50,9 @@ static bool request_is_good(const aisle_local_request *r) {
     return r->space != NULL && is_place(r->from) && is_place(r->goal) &&
            is_within(r->heading, -AISLE_ANGLE_MAX, AISLE_ANGLE_MAX) && is_within(r->speed, 1e-3, 1e3) &&
            is_within(r->range, 0.0, AISLE_LOCAL_RANGE_MAX) && is_within(r->safety, 0.0, COORD_MAX) &&
-           is_within(r->drift, 0.0, COORD_MAX) && is_within(r->lattice, 0.0, AISLE_LOCAL_RANGE_MAX) &&
-           r->particles != 1U && r->particles <= AISLE_PSO_PARTICLES_MAX && r->iterations <= 10000U &&
+           is_within(r->drift, 0.0, COORD_MAX) && is_within(r->longest, 0.0, COORD_MAX) &&
+           is_within(r->lattice, 0.0, AISLE_LOCAL_RANGE_MAX) && r->particles != 1U &&
+           r->particles <= AISLE_PSO_PARTICLES_MAX && r->iterations <= 10000U &&
            aisle_vec2_distance(r->from, r->goal) >= 1e-6 && way_is_good(r);
 }
 
@@ -78,6 +79,9 @@ static void begin_round(aisle_local *self) {
         return;
     }
     aisle_togo_start(&self->togo, space->grid, space->reach, r->from, r->goal);
+    if (self->sure) {
+        aisle_togo_insist(&self->togo, space->reach);
+    }
     for (uint32_t i = 0; i < self->movers; i++) {
         const aisle_local_mover *m = &self->mover[i];
         const double body = along ? space->vehicle->inner_radius : space->vehicle->outer_radius;
@@ -102,6 +106,7 @@ aisle_status aisle_local_start(aisle_local *self, const aisle_local_request *req
     self->hi[0] = self->hi[1] = range;
     self->round = self->bars = self->lines = self->relocations = self->units = 0;
     self->blocker = 0;
+    self->sure = true;
     self->fresh = self->rejoin = 0;
     self->end = AISLE_LOCAL_STUCK;
     aisle_local_take_movers(self);
@@ -205,7 +210,7 @@ static double length_of(const aisle_vec2 *points, uint32_t from, uint32_t count)
 
 static void finish(aisle_local *self, aisle_local_end end) {
     self->end = end;
-    self->phase = end == AISLE_LOCAL_CLOSED || end == AISLE_LOCAL_STUCK ? ENDED : TIDY;
+    self->phase = end > AISLE_LOCAL_REJOINED ? ENDED : TIDY;
     self->at = 1U;
     self->pass = 0;
     self->changed = false;
@@ -281,8 +286,17 @@ static bool close_hindrance(aisle_local *self) {
     return false;
 }
 
+static void stop_being_sure(aisle_local *self) {
+    self->sure = false;
+    self->bars = 0;
+    begin_round(self);
+}
+
 static void give_up_round(aisle_local *self) {
-    if (self->request.beeline || ++self->round >= AISLE_LOCAL_ROUNDS || !close_hindrance(self)) {
+    if (!self->request.beeline && self->sure && self->round + 1U >= AISLE_LOCAL_SURE) {
+        self->round++;
+        stop_being_sure(self);
+    } else if (self->request.beeline || ++self->round >= AISLE_LOCAL_ROUNDS || !close_hindrance(self)) {
         finish(self, AISLE_LOCAL_STUCK);
     } else {
         begin_round(self);
@@ -327,6 +341,11 @@ static void search_togo(aisle_local *self, uint32_t units) {
     if (st == AISLE_OK) {
         self->level = togo_at(self, self->request.from);
         self->phase = POSITION;
+        if (self->request.longest > 0.0 && self->level > LONGER * self->request.longest + self->togo.size) {
+            finish(self, AISLE_LOCAL_LONG);
+        }
+    } else if (st == AISLE_PARTIAL && self->sure) {
+        stop_being_sure(self);
     } else if (st == AISLE_PARTIAL) {
         name_blocker(self);
         finish(self, self->bars > 0U ? AISLE_LOCAL_STUCK : AISLE_LOCAL_CLOSED);

@@ -11,6 +11,7 @@
 //     shortest way the farther is the better one.
 //   - the first particle begins at the farthest place in sight down the cost-to-go, so a step never hangs on luck;
 //   - each position is nearer to the goal (by F's second term) than the one before: no cycles, and an end;
+//   - it is looked for over places that surely are wide enough first, then over all that may be (AISLE_LOCAL_SURE);
 //   - where no step leads on, what hindered it is closed in the cost-to-go (a mover with the way it is believed to
 //     take; else the coarse cells that are narrower than they look) and all begins anew, AISLE_LOCAL_ROUNDS times;
 //   - the rest of the old way is rejoined at its farthest place within range and in line of sight whose rest is free of
@@ -49,6 +50,7 @@
 #define AISLE_LOCAL_RELOCATE 8U // times a particle is drawn anew in a row
 #define AISLE_LOCAL_STEPS 160U  // positions in a round
 #define AISLE_LOCAL_ROUNDS 24U
+#define AISLE_LOCAL_SURE 6U       // of them over sure places, at most
 #define AISLE_LOCAL_WAY_MAX 1024U // points of the old way
 #define AISLE_LOCAL_POINTS_MAX (AISLE_LOCAL_STEPS + AISLE_LOCAL_WAY_MAX + 4U)
 #define AISLE_LOCAL_STRAIGHT 0.02 // rad
@@ -66,17 +68,19 @@ typedef struct aisle_local_request {
     double range;               // m, of sensing; 0: AISLE_LOCAL_RANGE; at most AISLE_LOCAL_RANGE_MAX
     double safety;              // m, >= 0
     double drift;               // m; 0: AISLE_LOCAL_DRIFT
-    double lattice;             // m, places are multiples of it (the paper: 1); 0: any. Points are not pulled then
-    bool beeline;               // the paper's F; no cost-to-go, no rounds
-    uint64_t seed;              // any
-    uint32_t particles;         // 0: AISLE_LOCAL_PARTICLES; 2 to AISLE_PSO_PARTICLES_MAX
-    uint32_t iterations;        // 0: AISLE_LOCAL_ITERATIONS; at most 10000
+    double longest;      // m, a way whose cost-to-go is more than 8 % and a cell above it is not looked for; 0: any
+    double lattice;      // m, places are multiples of it (the paper: 1); 0: any. Points are not pulled then
+    bool beeline;        // the paper's F; no cost-to-go, no rounds
+    uint64_t seed;       // any
+    uint32_t particles;  // 0: AISLE_LOCAL_PARTICLES; 2 to AISLE_PSO_PARTICLES_MAX
+    uint32_t iterations; // 0: AISLE_LOCAL_ITERATIONS; at most 10000
 } aisle_local_request;
 
 typedef enum aisle_local_end {
     AISLE_LOCAL_GOAL,     // by new points alone
     AISLE_LOCAL_REJOINED, // the old way
     AISLE_LOCAL_CLOSED,   // the cost-to-go knows no way among what stands: none for the disc, movers where told
+    AISLE_LOCAL_LONG,     // one longer than asked for may be there
     AISLE_LOCAL_STUCK     // none found; not a proof
 } aisle_local_end;
 
@@ -106,6 +110,7 @@ typedef struct aisle_local {
     double believed; // s after from_us, no moving mover is believed later
     aisle_local_bar bar[AISLE_LOCAL_ROUNDS];
     uint32_t bars, round, phase;
+    bool sure;                   // this round's cost-to-go leads over sure places alone
     aisle_vec2 *points;          // [AISLE_LOCAL_POINTS_MAX] the answer
     uint32_t count;              // of points; 0 where there is none
     uint32_t fresh;              // how many of them are new: the last of these lies on the old way, or is the goal

@@ -62,6 +62,15 @@ void aisle_local_list_near(aisle_local *self, aisle_vec2 p, double when) {
     }
 }
 
+// Is p less than `radius` from the segment from a along `way`? As aisle_segment_gap tells, without its root.
+static bool segment_is_near(aisle_vec2 p, aisle_vec2 a, aisle_vec2 way, double radius) {
+    const aisle_vec2 to = aisle_vec2_sub(p, a);
+    const double square = aisle_vec2_dot(way, way);
+    const double t = square > 0.0 ? aisle_clamp(aisle_vec2_dot(to, way) / square, 0.0, 1.0) : 0.0;
+    const aisle_vec2 off = aisle_vec2_sub(to, aisle_vec2_scale(way, t));
+    return aisle_vec2_dot(off, off) < radius * radius;
+}
+
 // In the frame that moves with the body the mover goes along a segment.
 static bool meets(const aisle_local *self, const aisle_local_mover *m, const aisle_convex *body, aisle_vec2 way,
                   double when) {
@@ -73,6 +82,9 @@ static bool meets(const aisle_local *self, const aisle_local_mover *m, const ais
     const aisle_vec2 from = aisle_vec2_add(m->at, aisle_vec2_scale(m->velocity, when));
     const aisle_vec2 moved = aisle_vec2_sub(aisle_vec2_scale(m->velocity, lasts), way);
     const aisle_vec2 ends[2] = {from, aisle_vec2_add(from, aisle_vec2_scale(moved, share))};
+    if (body->n == 1U) {
+        return segment_is_near(body->v[0], from, aisle_vec2_scale(moved, share), m->keep + body->radius);
+    }
     const aisle_convex segment = {ends, 2U, 0.0};
     return aisle_convex_gap(body, &segment) < m->keep;
 }

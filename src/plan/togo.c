@@ -54,12 +54,22 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of,
     // A point of the cell may be half a diagonal from its centre, and so may the obstacle's from its own.
     double least = aisle_max(reach_of / grid->lattice.res - 1.4143, 0.5);
     self->open_from = (uint32_t)aisle_min(least * least, (double)AISLE_FIELD_SQ_MAX);
+    self->insists = false;
     memset(self->count, 0, sizeof self->count);
     self->at = self->cells = 0;
     self->limit = AISLE_TOGO_NONE - DIAGONAL;
     self->start = cell_of(self, start);
     self->goal = cell_of(self, goal);
     reach(self, self->goal, 0);
+}
+
+// Room at both ends of a diagonal step for all of it (space.h), half a diagonal for the centre's place in its planning
+// cell and another for the obstacle's.
+void aisle_togo_insist(aisle_togo *self, double reach_of) {
+    const double need = sqrt(reach_of * reach_of + 0.5 * self->size * self->size);
+    const double cells = need / self->grid->lattice.res + 1.4143;
+    self->open_from = (uint32_t)aisle_min(cells * cells + 1.0, (double)AISLE_FIELD_SQ_MAX);
+    self->insists = true;
 }
 
 static aisle_vec2 centre_of(const aisle_togo *self, uint32_t ix, uint32_t iy) {
@@ -81,19 +91,29 @@ static void close_cell(aisle_togo *self, uint32_t cell) {
 void aisle_togo_close(aisle_togo *self, aisle_vec2 a, aisle_vec2 b, double radius) {
     const aisle_aabb box = {{aisle_min(a.x, b.x) - radius, aisle_min(a.y, b.y) - radius},
                             {aisle_max(a.x, b.x) + radius, aisle_max(a.y, b.y) + radius}};
+    const bool is_disc = aisle_vec2_distance(a, b) <= 0.0;
     const uint32_t lo = cell_of(self, box.lo), hi = cell_of(self, box.hi);
     for (uint32_t iy = lo / self->w; iy <= hi / self->w; iy++) {
         for (uint32_t ix = lo % self->w; ix <= hi % self->w; ix++) {
             const aisle_vec2 c = centre_of(self, ix, iy);
-            if (aisle_segment_gap(a, b, c, c) < radius) {
+            const aisle_vec2 off = aisle_vec2_sub(c, a);
+            if (aisle_vec2_dot(off, off) < radius * radius || (!is_disc && aisle_segment_gap(a, b, c, c) < radius)) {
                 close_cell(self, iy * self->w + ix);
             }
         }
     }
 }
 
+static bool holds_centre(const aisle_togo *self, uint32_t ix, uint32_t iy) {
+    const uint32_t fine = aisle_lattice_cell(&self->grid->lattice, centre_of(self, ix, iy), NULL);
+    return self->grid->field[fine] >= self->open_from || iy * self->w + ix == self->start;
+}
+
 static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
     const aisle_lattice *lattice = &self->grid->lattice;
+    if (self->insists) {
+        return holds_centre(self, ix, iy);
+    }
     uint32_t x0 = ix * self->stride, x1 = x0 + self->stride < lattice->w ? x0 + self->stride : lattice->w;
     uint32_t y0 = iy * self->stride, y1 = y0 + self->stride < lattice->h ? y0 + self->stride : lattice->h;
     for (uint32_t y = y0; y < y1; y++) {

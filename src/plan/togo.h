@@ -25,6 +25,7 @@ typedef struct aisle_togo {
     uint32_t count[AISLE_TOGO_RING];
     uint32_t capacity, stride, w, h; // stride: planning cells along one of its own
     double size;                     // m, side of a cell
+    bool insists;                    // see below
     uint32_t open_from;              // least field value of an open planning cell
     uint32_t at, limit, start, goal; // cost under way; where it ends; the cells of start and goal
     uint32_t cells;                  // looked at
@@ -37,6 +38,10 @@ void aisle_togo_carve(aisle_togo *self, aisle_arena *arena, uint32_t cells);
 
 // Begins; reach: m, radius of the disc and its margin.
 void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach, aisle_vec2 start, aisle_vec2 goal);
+
+// After start(): only cells are open in whose centre the disc has room enough to go straight to the neighbours' centres,
+// surely, and the start's own. What such cells connect is connected; narrower ways are not seen.
+void aisle_togo_insist(aisle_togo *self, double reach);
 
 // Between start() and the first step(): closes all that is less than `radius` (m) from the segment a b, but for the
 // start's own cell. The goal's cell closed: nothing is reached. O(cells of the segment's box).

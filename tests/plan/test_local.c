@@ -192,7 +192,7 @@ static void test_an_aisle_a_mover_stands_in_is_left_for_another(void) {
     open_as(AISLE_SPACE_FREE_TURN);
     add_mover(14.0, 4.25, 0.0, 0.0, 0.3);
     ask(8.0, 4.25, 18.0, 4.25);
-    TEST_ASSERT_EQUAL_UINT32(SEEDS, hits(22.3));
+    TEST_ASSERT_EQUAL_UINT32(SEEDS, hits(22.5));
     TEST_ASSERT_TRUE(local.points[1].x < 8.0); // it turned back
 }
 
@@ -263,6 +263,18 @@ static void test_drawn_halls_with_movers_have_no_line_that_meets_anything(void) 
     TEST_ASSERT_TRUE(found >= 55U && asked == 60U);
 }
 
+static void test_a_way_longer_than_asked_for_is_not_looked_for(void) {
+    u_pocket();
+    open_as(AISLE_SPACE_FREE_TURN);
+    ask(10.0, 6.0, 17.0, 6.0);
+    request.longest = 12.0;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run(1000));
+    TEST_ASSERT_EQUAL(AISLE_LOCAL_LONG, local.end);
+    TEST_ASSERT_EQUAL_UINT32(0, local.count);
+    request.longest = optimum();
+    TEST_ASSERT_EQUAL(AISLE_OK, run(1000));
+}
+
 static void test_slices_change_nothing(void) {
     static aisle_vec2 whole[AISLE_LOCAL_POINTS_MAX];
     spiral();
@@ -331,6 +343,7 @@ static void test_bad_requests_change_nothing(void) {
         r = request, r.safety = bad[i], refuse(r);
         r = request, r.drift = bad[i], refuse(r);
         r = request, r.lattice = bad[i], refuse(r);
+        r = request, r.longest = bad[i], refuse(r);
     }
     r = request, r.from.x = (double)NAN, refuse(r);
     r = request, r.goal.y = 1e9, refuse(r);
@@ -357,6 +370,7 @@ int main(void) {
     RUN_TEST(test_the_old_way_is_rejoined_behind_what_stands_on_it);
     RUN_TEST(test_all_closed_is_told_with_who_closes_it);
     RUN_TEST(test_drawn_halls_with_movers_have_no_line_that_meets_anything);
+    RUN_TEST(test_a_way_longer_than_asked_for_is_not_looked_for);
     RUN_TEST(test_slices_change_nothing);
     RUN_TEST(test_places_are_whole_numbers_in_the_papers_field);
     RUN_TEST(test_one_that_is_too_near_already_may_be_left);

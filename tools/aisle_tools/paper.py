@@ -7,15 +7,16 @@ import importlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-PAPERS = {1: "paper1"}
+PAPERS = {1: "paper1", 2: "paper2"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("number", type=int, choices=sorted(PAPERS), help="1: safety path by PSO in a factory store (2018)")
+    papers = "1: safety path by PSO in a factory store (2018); 2: local swarm among mobile obstacles (2013)"
+    parser.add_argument("number", type=int, choices=sorted(PAPERS), help=papers)
     parser.add_argument("--programs", type=Path, default=ROOT / "build" / "release", metavar="DIR", help="of the build")
     parser.add_argument("--scenarios", type=Path, default=ROOT / "tests" / "data" / "scenarios", metavar="DIR")
     parser.add_argument("--seeds", type=int, default=30, metavar="N", help="runs of the paper's method; default 30")
-    parser.add_argument("--margin", type=float, default=0.1, metavar="M", help="m, default 0.1")
+    parser.add_argument("--margin", type=float, default=0.1, metavar="M", help="m, default 0.1 (paper 1)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write pictures here")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures as JSON too")
 
