@@ -67,6 +67,17 @@ static void begin_contact(aisle_sim_judge *self, aisle_sim_watch *w, double t, i
     }
 }
 
+// A collision is shown even if the list is full of contacts at rest: in place of the last of these.
+static void show_collision(aisle_sim_judge *self, aisle_sim_watch *w, double t, int32_t id, bool is_static) {
+    uint32_t i = self->num_contacts;
+    while (w->contact >= self->num_contacts && i-- > 0) {
+        if (!self->contact[i].moving) {
+            w->contact = i;
+            self->contact[i] = (aisle_sim_contact){.t = t, .id = id, .is_static = is_static, .pose = self->pose};
+        }
+    }
+}
+
 // Counts what lasts; a contact at rest becomes a collision once the vehicle moves in it.
 static void note_contact(aisle_sim_judge *self, aisle_sim_watch *w, bool touches, double t, int32_t id, bool is_static,
                          double speed) {
@@ -83,6 +94,7 @@ static void note_contact(aisle_sim_judge *self, aisle_sim_watch *w, bool touches
         self->static_collisions += is_static ? 1 : 0;
         self->collisions += is_static ? 0 : 1;
         self->contacts_at_rest -= is_static ? 0 : 1;
+        show_collision(self, w, t, id, is_static);
     }
     if (w->contact < self->num_contacts) {
         aisle_sim_contact *c = &self->contact[w->contact];

@@ -100,6 +100,23 @@ static void test_two_touches_of_one_mover_count_twice(void) {
     TEST_ASSERT_EQUAL_INT64(2, judge.contacts_at_rest);
 }
 
+static void test_a_collision_is_shown_after_any_number_of_contacts_at_rest(void) {
+    aisle_sim_mover *m = aisle_sim_movers_place(&movers, aisle_vec2_of(3.0, 7.0), aisle_vec2_of(0.0, 0.0), 0.25);
+    aisle_pose2 at = {5.0, 7.0, 0.0};
+    for (int i = 0; i < AISLE_SIM_JUDGE_SHOWN + 5; i++) {
+        m->pose.x = 4.3; // there at once, to and fro
+        aisle_sim_judge_look(&judge, i, at, 0.0, 0.0, &movers);
+        m->pose.x = 3.0;
+        aisle_sim_judge_look(&judge, i + 0.5, at, 0.0, 0.0, &movers);
+        aisle_sim_judge_look(&judge, i + 0.7, at, 0.0, 0.0, &movers);
+    }
+    TEST_ASSERT_EQUAL_INT64(AISLE_SIM_JUDGE_SHOWN + 5, judge.contacts_at_rest);
+    drive(101.0, 1.0, at, (aisle_pose2){3.5, 7.0, 0.0});
+    TEST_ASSERT_EQUAL_INT64(1, judge.collisions);
+    const aisle_sim_contact *last = &judge.contact[AISLE_SIM_JUDGE_SHOWN - 1];
+    TEST_ASSERT_TRUE(last->moving && last->t > 101.0 && last->id == m->id);
+}
+
 static void test_creeping_below_the_threshold_counts_as_rest(void) {
     (void)aisle_sim_movers_place(&movers, aisle_vec2_of(5.76, 7.0), aisle_vec2_of(0.0, 0.0), 0.25);
     drive(0.0, 10.0, (aisle_pose2){5.0, 7.0, 0.0}, (aisle_pose2){5.09, 7.0, 0.0}); // 9 mm/s
@@ -188,6 +205,7 @@ int main(void) {
     RUN_TEST(test_being_run_into_at_rest_is_no_collision);
     RUN_TEST(test_moving_off_while_touched_is_a_collision);
     RUN_TEST(test_two_touches_of_one_mover_count_twice);
+    RUN_TEST(test_a_collision_is_shown_after_any_number_of_contacts_at_rest);
     RUN_TEST(test_creeping_below_the_threshold_counts_as_rest);
     RUN_TEST(test_turning_on_the_spot_is_moving);
     RUN_TEST(test_the_hall_is_watched_too);
