@@ -14,6 +14,7 @@ from aisle_tools.bus import LogWriter
 from aisle_tools.world import Polygon, World
 
 HALLS = ("open", "aisles", "crossings", "doors")
+DRAWN = "drawn"  # a hall, vehicle and movers that aisle-sim draws itself
 KINDS = ("constant", "jumps", "agv", "person", "adversarial")
 STOP_ROOM = 0.2  # m beyond the turning body and its margin
 APART = 6.0  # m between stops
@@ -79,6 +80,8 @@ class Drive:
 
 def draw(hall: str, kind: str, seed: int) -> Drive:
     """The same one for the same three, always."""
+    if hall == DRAWN:
+        return Drive(seed, hall, kind, DRAWN, 0.0, 0.0, [], (), [], 0, 0.0)
     rng = random.Random(f"{hall} {kind} {seed}")
     name = rng.choice(sorted(VEHICLES))
     while True:
