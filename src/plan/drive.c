@@ -16,6 +16,7 @@
 #define PACE_LEASE 0.35 // s, that new speeds are chosen to be safe for: so they stay so for a while
 #define START_LEASE 0.5 // s, the same of a vehicle at rest: no creeping up to what it waits for
 #define JOINT 1e-6      // m, two ways that meet are apart by at most
+#define APART 2e-3      // m, from a waypoint to where a path is left
 #define SNAP 2e-6       // m, shorter stretches are none
 
 static double lease_most(void) {
@@ -186,6 +187,16 @@ static void move_on(aisle_drive *self, int64_t now_us) {
     self->plan.at = find(&self->plan, AHEAD + age * vehicle->v_max, aisle_motion_pose(w, n, self->out.at), NULL);
 }
 
+// The place, moved on until no tiny piece lies between it and a waypoint; a turn is left at its end.
+static aisle_place clear_of_waypoints(const aisle_waypoint_msg *w, aisle_place place) {
+    if (place.piece == 0U) {
+        return place;
+    }
+    const double length = aisle_piece_length(&w[place.piece - 1U], &w[place.piece]);
+    const double u = place.u * length < APART ? APART / aisle_max(length, APART) : place.u;
+    return (aisle_place){place.piece, (1.0 - u) * length < APART ? 1.0 : u};
+}
+
 aisle_place aisle_drive_rest(const aisle_drive *self, const aisle_vehicle *vehicle, double delay) {
     const aisle_drive_path *out = &self->out;
     AISLE_ASSERT(self->has_plan);
@@ -198,10 +209,7 @@ aisle_place aisle_drive_rest(const aisle_drive *self, const aisle_vehicle *vehic
         aisle_motion_rest(vehicle, w, n, out->dwell, out->at, self->v, vehicle->reaction_time + delay);
     const double way = aisle_motion_length_to(w, n, rest) - aisle_motion_length_to(w, n, out->at);
     aisle_place place = find(&self->plan, way + BACK, aisle_motion_pose(w, n, rest), NULL);
-    if (place.piece > 0U && (self->plan.msg->waypoints[place.piece - 1U].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0) {
-        place.u = 1.0; // a turn is left at its end
-    }
-    return place;
+    return clear_of_waypoints(self->plan.msg->waypoints, place);
 }
 
 // ---- another way from a place on
@@ -214,7 +222,7 @@ static uint32_t end_at(const aisle_waypoint_msg *w, uint32_t of, aisle_place at,
         return end + 1U;
     }
     const double length = aisle_motion_length_to(w, of, to) - aisle_motion_length_to(w, of, at);
-    while (to.piece == at.piece && end > 0U && (double)cut[end - 1U].s > length - SNAP) {
+    while (end > 0U && (double)cut[end - 1U].s > length - SNAP) { // and no piece of no length
         end--;
     }
     if (end > 0U) {

@@ -413,6 +413,14 @@ uint32_t aisle_mission_note_pose(aisle_mission *self, const aisle_vehicle *vehic
     return reached;
 }
 
+double aisle_mission_rest(const aisle_mission *self) {
+    if (!self->wanted || !self->rest.is_on) {
+        return 0.0;
+    }
+    const double dwell = (double)self->list[self->order[0]].dwell;
+    return aisle_max(dwell - seconds(self->rest.since_us, self->pose_us), 0.0);
+}
+
 const aisle_goal_msg *aisle_mission_goal(const aisle_mission *self) {
     return self->wanted ? &self->list[self->order[0]] : NULL;
 }

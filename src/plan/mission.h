@@ -130,6 +130,9 @@ bool aisle_mission_fits(const aisle_mission *self, const aisle_request *request)
 // Such a plan, which fits, stands. Returns how many of its goals, its first ones, were reached meanwhile.
 uint32_t aisle_mission_take_order(aisle_mission *self, const aisle_request *request);
 
+// What is left (s) of the dwell on the goal it rests on by the newest pose; 0 if it rests on none.
+double aisle_mission_rest(const aisle_mission *self);
+
 // The goal being driven to; NULL: none.
 const aisle_goal_msg *aisle_mission_goal(const aisle_mission *self);
 #endif

@@ -9,8 +9,12 @@
 #define STILL 1e-3   // m/s, a slower mover does not move
 
 void aisle_pace_predict_carve(aisle_pace_predict *self, aisle_arena *arena) {
-    self->w = (aisle_waypoint_msg *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_waypoint_msg));
-    self->dwell = (float *)aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    void *w = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_waypoint_msg));
+    void *dwell = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(float));
+    if (self != NULL) {
+        self->w = (aisle_waypoint_msg *)w;
+        self->dwell = (float *)dwell;
+    }
 }
 
 // ---- the way

@@ -51,6 +51,7 @@ typedef struct aisle_pace_predict {
     aisle_band band;
 } aisle_pace_predict;
 
+// self NULL: only measures.
 void aisle_pace_predict_carve(aisle_pace_predict *self, aisle_arena *arena);
 
 // Begins. What the request points to stays put until the end. O(n).

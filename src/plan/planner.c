@@ -74,6 +74,7 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits) {
     aisle_movers_carve(self != NULL ? &self->movers : &movers_instead, arena);
     row(self, arena, &from, "moving obstacles");
     aisle_drive_carve(self != NULL ? &self->drive : NULL, arena);
+    aisle_pace_predict_carve(self != NULL ? &self->predict : NULL, arena);
     row(self, arena, &from, "path under way");
     if (self != NULL) {
         self->layout = layout;
@@ -159,7 +160,11 @@ static void begin(aisle_planner *self, aisle_request *request) {
     aisle_path_msg *head = self->head;
     head->path_revision = self->path_revision + 1;
     head->valid_until_utime = self->now_us + AISLE_LEASE_US;
+    self->leaving.goes_round = self->leaving.round && !request->is_query;
     aisle_route_start(self->route, self->layout, &self->vehicle, request, head);
+    if (self->leaving.goes_round) {
+        aisle_planner_go_round(self);
+    }
     self->planning = true;
 }
 
@@ -279,6 +284,8 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
         step_layout(self, work_units);
     } else if (aisle_planner_cycle_is_due(self)) {
         aisle_planner_step_cycle(self, work_units);
+    } else if (self->weighing != AISLE_WEIGHING_NOTHING) {
+        aisle_planner_step_weighing(self, work_units);
     } else if (self->planning) {
         step_route(self, work_units);
     } else if (self->queue_count > 0U || self->mission.replan) {

@@ -62,6 +62,7 @@ void aisle_planner_reply(aisle_planner *self, const aisle_proof *proof) {
 // Renewing the lease changes nothing else, so the proof of the bytes stays good.
 void aisle_planner_send(aisle_planner *self) {
     const aisle_drive_path *out = &self->drive.out;
+    self->withdrawn.cause = 0;
     const int64_t until = aisle_drive_lease_until(&self->drive);
     aisle_msg_put_int64(out->bytes + AISLE_PATH_AT_UTIME, self->now_us);
     aisle_msg_put_int64(out->bytes + AISLE_PATH_AT_VALID_UNTIL_UTIME, until);
@@ -71,8 +72,10 @@ void aisle_planner_send(aisle_planner *self) {
 
 void aisle_planner_withdraw(aisle_planner *self, const aisle_refusal *why) {
     aisle_mission *mission = &self->mission;
-    if (self->drive.has_out || mission->cause != why->cause || mission->cause_id != why->id) {
+    const bool is_told = self->withdrawn.cause == why->cause && self->withdrawn.id == why->id;
+    if (self->drive.has_out || !is_told) {
         self->drive.has_out = false;
+        self->withdrawn = *why;
         aisle_planner_refuse(self, &mission->request, why, NULL, 0, 0);
     }
 }

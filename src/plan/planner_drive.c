@@ -4,12 +4,17 @@
 
 #include <string.h>
 
-#define PLANNING_DELAY 0.2     // s, that planning under way may take at first
-#define PLANNING_DELAY_MAX 3.2 // s
-#define TRIES_MAX 4U           // at leaving the path under way, before the vehicle is stopped for it
-#define LOOK_ROUND_US 500000   // between two looks whether going round is worth it
-#define DELAY_WORTH 2.0        // s, of waiting, before going round is looked for
-#define GAIN_WORTH 1.0         // s, that going round must save
+#define PLANNING_DELAY 0.2          // s, that planning under way may take at first
+#define PLANNING_DELAY_MAX 3.2      // s
+#define TRIES_MAX 4U                // at leaving the path under way, before the vehicle is stopped for it
+#define PATIENCE_US 4000000         // of a vehicle that hardly gets on, before it looks for a way round
+#define PATIENCE_STANDING_US 500000 // the same of what stands
+#define STANDING 0.2                // m/s; a slower mover stands
+#define NO_END 240.0                // s, counted for a wait without an end in sight
+#define LOOK_ROUND_US 500000        // between two looks whether going round is worth it
+#define DELAY_WORTH 5.0             // s, of waiting, before going round is looked for
+#define WEIGHED_LEASE 0.35          // s, as drive.c chooses speeds by
+#define GAIN_WORTH 5.0              // s, that going round must save
 
 // ---- where plans begin
 
@@ -29,8 +34,25 @@ void aisle_planner_leave_from(aisle_planner *self, aisle_request *request) {
 }
 
 // Planned once more, from farther ahead; at last from where the vehicle stands.
+void aisle_planner_go_round(aisle_planner *self) {
+    const aisle_drive_path *plan = &self->drive.plan;
+    const aisle_leaving *leaving = &self->leaving;
+    double way = 0.0;
+    if (leaving->under_way) {
+        const uint32_t n = (uint32_t)(uint16_t)plan->msg->num_waypoints;
+        way = aisle_motion_length_to(plan->msg->waypoints, n, leaving->from) -
+              aisle_motion_length_to(plan->msg->waypoints, n, plan->at);
+    }
+    const double time = way / aisle_max(self->drive.v, self->vehicle.creep_speed);
+    aisle_route_go_round(self->route, &self->movers, self->now_us + (int64_t)(time * 1e6), leaving->under_way);
+}
+
 static void try_again(aisle_planner *self) {
     aisle_leaving *leaving = &self->leaving;
+    if (leaving->goes_round) { // it will be weighed again
+        leaving->round = leaving->goes_round = false;
+        return;
+    }
     if (++leaving->tries > TRIES_MAX) {
         leaving->tries = 0;
         self->failed = (aisle_refusal){AISLE_STATUS_BUDGET, 0, 0.0F};
@@ -38,7 +60,7 @@ static void try_again(aisle_planner *self) {
         return;
     }
     leaving->delay = leaving->delay > 0.0 ? aisle_min(2.0 * leaving->delay, PLANNING_DELAY_MAX) : PLANNING_DELAY;
-    self->mission.replan = !leaving->round;
+    aisle_planner_replan(self);
 }
 
 static bool take_under_way(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
@@ -62,7 +84,7 @@ static void pass_goals(aisle_planner *self, uint32_t passed) {
     }
 }
 
-void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
+static void take_plan(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
     if (!self->leaving.under_way && aisle_drive_moves(&self->drive)) { // a better path from where it has left
         return;
     }
@@ -83,7 +105,8 @@ void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, 
 
 void aisle_planner_take_failure(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
                                 const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units) {
-    if (self->leaving.round) { // it waits on
+    if (self->leaving.goes_round) { // it waits on
+        self->leaving.round = self->leaving.goes_round = false;
         return;
     }
     if (aisle_drive_moves(&self->drive)) {
@@ -148,6 +171,7 @@ static void begin_cycle(aisle_planner *self) {
     const aisle_drive_world world = {self->layout, &self->vehicle, &self->movers};
     aisle_refusal why;
     const bool stops = must_stop(self, &why);
+    self->drive.rest = aisle_mission_rest(&self->mission);
     self->cycle_wanted = false;
     aisle_planner_fill_head(self, &self->mission.request);
     aisle_path_msg *head = self->head;
@@ -168,19 +192,117 @@ static void after_stop(aisle_planner *self) {
     } else if (drive->is_off || drive->is_unfit || self->failed.cause != 0) {
         aisle_planner_revoke(self, drive->why.cause, drive->why.id);
         self->failed.cause = 0;
-        self->leaving.round = false;
-        self->mission.replan = true;
+        aisle_planner_replan(self);
     }
 }
 
-// Is waiting for what slows the vehicle dear enough to look for a way round?
-static void weigh_going_round(aisle_planner *self) {
-    aisle_drive *drive = &self->drive;
-    if (drive->why.cause != AISLE_STATUS_YIELDING || aisle_planner_is_busy(self) ||
+// ---- wait, or go round?
+
+static uint32_t next_goal_of(const aisle_waypoint_msg *w, uint32_t n) {
+    uint32_t i = n > 1U ? 1U : 0U;
+    while (i + 1U < n && (w[i].flags & AISLE_WAYPOINT_GOAL) == 0) {
+        i++;
+    }
+    return i;
+}
+
+static void begin_weighing(aisle_planner *self, aisle_weighing what, const aisle_waypoint_msg *w, uint32_t n,
+                           const float *dwell, aisle_place at) {
+    const aisle_pace_predict_request request = {.layout = self->layout,
+                                                .vehicle = &self->vehicle,
+                                                .movers = &self->movers,
+                                                .w = w,
+                                                .n = n,
+                                                .dwell = dwell,
+                                                .at = at,
+                                                .v = what == AISLE_WEIGHING_WAIT ? self->drive.v : 0.0,
+                                                .until = next_goal_of(w, n),
+                                                .now_us = self->now_us,
+                                                .lease = WEIGHED_LEASE};
+    aisle_pace_predict_start(&self->predict, &request);
+    self->weighing = what;
+}
+
+// Does the mover of this id stand? Then it is no use to come near first.
+static bool stands(const aisle_planner *self, int32_t id) {
+    for (uint32_t i = 0; i < self->movers.count; i++) {
+        const aisle_mover *mover = &self->movers.mover[i];
+        if (mover->id == id && aisle_vec2_length(mover->velocity) < STANDING) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// What slows the vehicle may be worth going round: how long will it take to go on?
+static void weigh_waiting(aisle_planner *self) {
+    const aisle_drive *drive = &self->drive;
+    const bool yields = drive->why.cause == AISLE_STATUS_YIELDING;
+    if (!yields || (drive->v > 0.5 * self->vehicle.creep_speed && !stands(self, drive->why.id))) {
+        self->swift_us = self->now_us;
+    }
+    const int64_t patience = stands(self, drive->why.id) ? PATIENCE_STANDING_US : PATIENCE_US;
+    if (!yields || self->now_us - self->swift_us < patience || aisle_planner_is_busy(self) ||
         self->now_us - self->looked_us < LOOK_ROUND_US) {
         return;
     }
+    const aisle_drive_path *plan = &drive->plan;
     self->looked_us = self->now_us;
+    begin_weighing(self, AISLE_WEIGHING_WAIT, plan->msg->waypoints, (uint32_t)(uint16_t)plan->msg->num_waypoints,
+                   plan->dwell, plan->at);
+}
+
+// s to the next goal if nothing moved.
+static double free_time(const aisle_planner *self) {
+    const aisle_drive_path *plan = &self->drive.plan;
+    const uint32_t n = (uint32_t)(uint16_t)plan->msg->num_waypoints;
+    const aisle_waypoint_msg *w = plan->msg->waypoints;
+    return (double)w[next_goal_of(w, n)].t - aisle_motion_time(&self->vehicle, w, n, plan->dwell, plan->at);
+}
+
+// The way round is worth it if the vehicle is there sooner, what it still drives of the old way counted.
+static void take_round(aisle_planner *self, double seconds) {
+    const aisle_route *route = self->route;
+    self->round_s = seconds;
+    self->counters[AISLE_COUNTER_WAIT_MS] = (int64_t)(self->wait_s * 1e3);
+    self->counters[AISLE_COUNTER_ROUND_MS] = (int64_t)(self->round_s * 1e3);
+    if (seconds + GAIN_WORTH < self->wait_s && !aisle_mission_is_stale(&self->mission, &route->request)) {
+        self->counters[AISLE_COUNTER_ROUNDS]++;
+        take_plan(self, &route->request, aisle_route_answer(route));
+    }
+    self->leaving.round = self->leaving.goes_round = false;
+}
+
+void aisle_planner_step_weighing(aisle_planner *self, uint32_t units) {
+    uint32_t spent = 0;
+    const aisle_status st = aisle_pace_predict_step(&self->predict, units, &spent);
+    self->counters[AISLE_COUNTER_WORK_UNITS] += spent;
+    if (st == AISLE_BUSY) {
+        return;
+    }
+    const aisle_weighing what = self->weighing;
+    const double seconds = st == AISLE_OK ? self->predict.seconds : self->predict.seconds + NO_END;
+    self->weighing = AISLE_WEIGHING_NOTHING;
+    if (what == AISLE_WEIGHING_ROUND) {
+        take_round(self, seconds);
+    } else if (self->drive.has_plan && self->mission.wanted) {
+        self->wait_s = seconds;
+        self->leaving.round = self->wait_s - free_time(self) > DELAY_WORTH;
+        self->mission.replan = self->mission.replan || self->leaving.round;
+    }
+}
+
+void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, const aisle_proof *proof) {
+    if (!self->leaving.goes_round) {
+        take_plan(self, request, proof);
+        return;
+    }
+    aisle_path_msg *path = self->route->decoded; // the verifier's, which is done
+    aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, path, NULL);
+    AISLE_ASSERT(st == AISLE_OK);
+    const uint32_t n = (uint32_t)(uint16_t)path->num_waypoints;
+    begin_weighing(self, AISLE_WEIGHING_ROUND, path->waypoints, n, NULL,
+                   n > 1U ? (aisle_place){1U, 0.0} : (aisle_place){0U, 0.0});
 }
 
 static void tell_verdict(aisle_planner *self, aisle_drive_verdict verdict) {
@@ -217,6 +339,6 @@ void aisle_planner_step_cycle(aisle_planner *self, uint32_t units) {
     if (drive->stops || drive->is_unfit) {
         after_stop(self);
     } else {
-        weigh_going_round(self);
+        weigh_waiting(self);
     }
 }

@@ -245,6 +245,7 @@ static aisle_status take_goals(aisle_planner *self, const aisle_goal_list_msg *m
 
 void aisle_planner_replan(aisle_planner *self) {
     self->mission.replan = self->mission.wanted;
+    self->leaving.round = false;
 }
 
 aisle_request *aisle_planner_renew_request(aisle_planner *self) {
@@ -255,7 +256,7 @@ aisle_request *aisle_planner_renew_request(aisle_planner *self) {
 
 static aisle_status take_obstacles(aisle_planner *self, const aisle_obstacles_msg *msg) {
     aisle_refusal why;
-    if (self->drive.stage != AISLE_DRIVE_IDLE) {
+    if (self->drive.stage != AISLE_DRIVE_IDLE || self->weighing != AISLE_WEIGHING_NOTHING) {
         return AISLE_BUSY;
     }
     const aisle_status st =

@@ -9,6 +9,7 @@
 #include "aisle/planner.h"
 #include "plan/drive.h"
 #include "plan/mission.h"
+#include "plan/pace_predict.h"
 #include "plan/route.h"
 #include "world/movers.h"
 
@@ -25,12 +26,15 @@ typedef struct aisle_outgoing { // a path_t waiting to be pulled
 
 typedef struct aisle_leaving { // where a plan made under way leaves the one before
     bool under_way;            // else it begins where the vehicle stands
-    bool round;                // it goes round a moving obstacle: that there is none is no reason to stop
+    bool round;                // wanted: a way round moving obstacles. That there is none is no reason to stop
+    bool goes_round;           // the request under way is for such
     aisle_place from;          // on the plan of this serial
     uint32_t serial;
     double delay;   // s, that planning may take; more after each time it took longer
     uint32_t tries; // that failed
 } aisle_leaving;
+
+typedef enum aisle_weighing { AISLE_WEIGHING_NOTHING, AISLE_WEIGHING_WAIT, AISLE_WEIGHING_ROUND } aisle_weighing;
 
 struct aisle_planner {
     aisle_config config; // limits resolved
@@ -49,8 +53,14 @@ struct aisle_planner {
     aisle_drive drive;     // the mission's plan and what is out of it
     aisle_leaving leaving; // of the mission's request under way
     bool cycle_wanted;     // something that a cycle goes by is new
-    aisle_refusal failed;  // the mission cannot be planned, and the vehicle is still to be stopped; cause 0: it can
-    int64_t looked_us;     // when going round was last weighed
+    aisle_refusal
+        withdrawn;        // why the vehicle at rest was told to wait, until something is out again; cause 0: it was not
+    aisle_refusal failed; // the mission cannot be planned, and the vehicle is still to be stopped; cause 0: it can
+    aisle_weighing weighing;    // how long is what? Movers do not change meanwhile
+    aisle_pace_predict predict; // it
+    double wait_s, round_s;     // to the next goal: by the plan, and by a way round, as weighed last
+    int64_t looked_us;          // when that was begun
+    int64_t swift_us;           // when the vehicle was last faster than its creep speed, or was sent off
     int32_t command_id;
     aisle_request *queue; // [limits.requests] ring
     uint32_t queue_head, queue_count;
@@ -98,6 +108,10 @@ void aisle_planner_fill_head(aisle_planner *self, const aisle_request *request);
 
 // planner_drive.c
 
+// The mission's request just started is to go round the movers.
+void aisle_planner_go_round(aisle_planner *self);
+// Goes on weighing whether to wait or to go round.
+void aisle_planner_step_weighing(aisle_planner *self, uint32_t units);
 // Is a cycle under way or due?
 bool aisle_planner_cycle_is_due(const aisle_planner *self);
 // Spends about `units` on it.

@@ -6,6 +6,7 @@
 
 // While measuring there is no route: its parts are carved one after the other into this.
 typedef union part {
+    aisle_local local;
     aisle_space space;
     aisle_tangent tangent;
     aisle_manoeuvre manoeuvre;
@@ -21,12 +22,13 @@ typedef union part {
 // No leg is searched two ways at a time: the tangent search and that of manoeuvres lie where the grid search does. Nor
 // is anything searched while an order is computed.
 static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_arena shared[3] = {*arena, *arena, *arena};
+    aisle_arena shared[4] = {*arena, *arena, *arena, *arena};
     aisle_tangent_carve(PART(self, instead, tangent), &shared[0], limits);
     aisle_manoeuvre_carve(PART(self, instead, manoeuvre), &shared[1], limits);
     aisle_tour_carve_shared(PART(self, instead, tour), &shared[2]);
+    aisle_local_carve(PART(self, instead, local), &shared[3], limits->cells);
     aisle_seed_carve(PART(self, instead, seed), arena, limits);
-    for (uint32_t i = 0; i < 3U; i++) {
+    for (uint32_t i = 0; i < 4U; i++) {
         arena->overflow = arena->overflow || shared[i].overflow;
         arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
     }
@@ -120,6 +122,8 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->stops = false;
     self->is_wide = false;
     self->announced = false;
+    self->movers = NULL;
+    self->in_motion = false;
     self->told_count = 0;
     self->named = AISLE_ROUTE_NONE;
     self->spent = 0;
@@ -162,6 +166,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_swarm(self, units);
     case AISLE_ROUTE_PAPER:
         return aisle_route_step_paper(self, units);
+    case AISLE_ROUTE_LOCAL:
+        return aisle_route_step_local(self, units);
     case AISLE_ROUTE_ONE_WAY:
         return aisle_route_step_one_way(self, units);
     case AISLE_ROUTE_WHY:

@@ -18,6 +18,8 @@
 // Planner by name: ASTAR leaves the swarm out; PSO is the objective's GRID way alone and takes the swarm's path wherever
 // it is proved; PSO with objective PAPER is the paper's own swarm (PAPER) alone, its path or a refusal (BUDGET: it found
 // none, which proves nothing).
+// PSO_LOCAL is the local swarm's way alone (local.h), with movers if aisle_route_go_round() gave some; its failure proves
+// nothing (BLOCKED_BY the mover nearest to where it got to, else BUDGET).
 // Zones (zones.h): tangent ways must obey DIRECTED ones, else the leg is the grid's; PENALTY zones add what they cost to
 // every measure (SAFEST: as risk), and a GRID way of the objective's own to SHORT and CLEAR. Where zones are directed and
 // no way was found, ONE_WAY asks for a proof that they shut every way (one_way.h): NO_PATH, and if a way was found that
@@ -42,6 +44,7 @@
 #include "plan/cache.h"
 #include "plan/compose.h"
 #include "plan/leg.h"
+#include "plan/local.h"
 #include "plan/manoeuvre.h"
 #include "plan/nearest.h"
 #include "plan/one_way.h"
@@ -91,7 +94,8 @@ typedef enum aisle_way_kind {
     AISLE_WAY_SHORT, // exactly, by the tangent search, at the margin
     AISLE_WAY_CLEAR, // the same at the creep clearance, where that is possible; else as GRID
     AISLE_WAY_GRID,  // by the grid's search
-    AISLE_WAY_PAPER  // by the paper's own swarm
+    AISLE_WAY_PAPER, // by the paper's own swarm
+    AISLE_WAY_LOCAL  // by the local swarm
 } aisle_way_kind;
 
 typedef struct aisle_way {
@@ -114,6 +118,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_VERIFY,
     AISLE_ROUTE_SWARM,
     AISLE_ROUTE_PAPER,
+    AISLE_ROUTE_LOCAL,
     AISLE_ROUTE_ONE_WAY, // do zones shut every way?
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_NEXT, // the way under way is done with
@@ -156,6 +161,12 @@ typedef struct aisle_route {
     aisle_taut taut;
     aisle_swarm swarm;
     aisle_paper_swarm paper;
+    aisle_local local;
+    const aisle_movers *movers; // to go round, or NULL; the vehicle is at the start
+    int64_t movers_us;          // then,
+    bool in_motion;             // and does not stop there
+    aisle_vec2 bend;            // from where on the leg's way may bend
+    bool local_is_there;        // nothing to search: the leg begins at its goal
     aisle_compose compose;
     aisle_verify verify;
     aisle_one_way one_way;
@@ -199,6 +210,10 @@ void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_
 // path_revision of the first path told is head's, of the improved one the next.
 void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        const aisle_request *request, const aisle_path_msg *head);
+
+// After start(): the way is to be the local swarm's, round the movers. from_us: when the vehicle is at the start; in_motion: it
+// does not stop there, so that its way begins straight ahead.
+void aisle_route_go_round(aisle_route *self, const aisle_movers *movers, int64_t from_us, bool in_motion);
 
 // Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: there is an answer already, and what may better it takes long (told
 // once);

@@ -2,14 +2,14 @@
 
 static bool options_are_known(const aisle_options_msg *options) {
     bool planner = options->planner == AISLE_OPTIONS_AUTO || options->planner == AISLE_OPTIONS_PSO ||
-                   options->planner == AISLE_OPTIONS_ASTAR;
+                   options->planner == AISLE_OPTIONS_ASTAR || options->planner == AISLE_OPTIONS_PSO_LOCAL;
     bool interpolation =
         options->interpolation == AISLE_OPTIONS_SPLINE || options->interpolation == AISLE_OPTIONS_LINEAR;
     bool is_paper = options->objective == AISLE_OPTIONS_PAPER && options->planner == AISLE_OPTIONS_PSO;
     bool objective =
         is_paper || (options->objective >= AISLE_OPTIONS_SAFEST && options->objective <= AISLE_OPTIONS_LEAST_ENERGY);
     return planner && objective && interpolation && options->risk_weight >= 0.0F && options->work_units >= 0 &&
-           options->num_samples >= 0;
+           options->num_samples >= 0 && options->step >= 0.0F;
 }
 
 static bool in_bounds(const aisle_route *self, aisle_vec2 p) {

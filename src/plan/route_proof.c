@@ -34,7 +34,8 @@ static double length_bound(const aisle_route *self) {
 
 static void seal(aisle_route *self) {
     aisle_path_msg *path = self->path;
-    path->planner = any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
+    const bool is_local = self->way->kind == AISLE_WAY_LOCAL;
+    path->planner = is_local ? AISLE_OPTIONS_PSO_LOCAL : any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
     path->work_units = (int32_t)self->spent;
     path->cause = self->is_cut ? AISLE_STATUS_BUDGET : 0;
     path->cause_value = self->is_cut ? (float)self->budget : 0.0F;
@@ -122,7 +123,7 @@ static void begin_swarm_leg(aisle_route *self);
 
 // Is there nothing on this way that a swarm could improve?
 static bool is_settled(const aisle_route *self) {
-    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->stops) {
+    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->way->kind == AISLE_WAY_LOCAL || self->stops) {
         return true;
     }
     if (self->request.options.planner == AISLE_OPTIONS_PSO) {

@@ -2,7 +2,7 @@
 //
 // route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST.
 // route_order.c: ORDER. route_tangent.c: TANGENT. route_manoeuvre.c: MANOEUVRE. route_seed.c: SEED, TAUT.
-// route_zones.c: ONE_WAY. route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER.
+// route_zones.c: ONE_WAY. route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER. route_local.c: LOCAL.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
@@ -147,6 +147,10 @@ aisle_status aisle_route_step_one_way(aisle_route *self, uint32_t units);
 // route_paper.c: the paper's own swarm in place of everything before BUILD.
 void aisle_route_begin_paper(aisle_route *self);
 aisle_status aisle_route_step_paper(aisle_route *self, uint32_t units);
+
+// route_local.c: the local swarm in place of everything before BUILD.
+void aisle_route_begin_local(aisle_route *self);
+aisle_status aisle_route_step_local(aisle_route *self, uint32_t units);
 
 // route_proof.c
 aisle_compose_request aisle_route_build_request(aisle_route *self);

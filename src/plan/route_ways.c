@@ -25,6 +25,7 @@ static const aisle_way quickest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_LEAST_ENERGY}};
 static const aisle_way papers = {AISLE_WAY_PAPER, AISLE_OPTIONS_SHORTEST};
+static const aisle_way local = {AISLE_WAY_LOCAL, AISLE_OPTIONS_SHORTEST};
 static const aisle_way by_grid[] = {{AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_SHORTEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
@@ -36,6 +37,9 @@ static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
     if (self->request.options.planner == AISLE_OPTIONS_PSO) { // the swarm by name: on its own objective's seed alone
         const aisle_way *way = wish == AISLE_OPTIONS_PAPER ? &papers : &by_grid[wish];
         return n == 0U ? way : NULL;
+    }
+    if (self->request.options.planner == AISLE_OPTIONS_PSO_LOCAL) {
+        return n == 0U ? &local : NULL;
     }
     bool tolls = aisle_zones_any_toll(self->layout, wish);
     switch (wish) {
@@ -70,6 +74,8 @@ static void begin_way(aisle_route *self) {
     self->room = is_clear ? aisle_max(vehicle->creep_clearance + CREEP_SPARE, keep) : keep;
     if (self->way->kind == AISLE_WAY_PAPER) {
         aisle_route_begin_paper(self);
+    } else if (self->way->kind == AISLE_WAY_LOCAL) {
+        aisle_route_begin_local(self);
     } else {
         aisle_route_begin_legs(self);
     }

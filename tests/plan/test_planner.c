@@ -1016,7 +1016,7 @@ static aisle_status obstacles(int32_t source, int16_t n, int32_t id) {
     msg.source = source;
     msg.num_obstacles = n;
     msg.obstacles[0] =
-        (aisle_obstacle_msg){.id = id, .kind = AISLE_OBSTACLE_PERSON, .x = 3.2, .y = 4.3, .radius = 0.3F};
+        (aisle_obstacle_msg){.id = id, .kind = AISLE_OBSTACLE_PERSON, .x = 2.95, .y = 4.0, .radius = 0.3F};
     return door_submit(AISLE_INPUT_OBSTACLES, &msg);
 }
 

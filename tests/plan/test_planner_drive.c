@@ -168,6 +168,44 @@ static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
     TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 600) > 0);
 }
 
+static void test_a_person_who_stays_is_driven_round_where_there_is_room(void) {
+    setup_hall(20.0, 12.0);
+    open_hall(2.0, 6.0, 0.0);
+    see(7, 11.0, 6.0, 0.0, 0.0);
+    go(1, 18.0, 6.0);
+    double aside = 0.0, near = 1e9;
+    int arrived = -1;
+    for (int i = 0; i < 900 && arrived < 0; i++) {
+        tick();
+        aside = fmax(aside, fabs(here.y - 6.0));
+        near = fmin(near, hypot(here.x - 11.0, here.y - 6.0));
+        arrived = has_arrived(18.0, 6.0) ? i : -1;
+    }
+    TEST_ASSERT_GREATER_THAN_INT(0, arrived);
+    TEST_ASSERT_TRUE(aside > 1.5 && near > 1.0);
+    const int64_t *counters = aisle_planner_counters(door);
+    TEST_ASSERT_TRUE(counters[AISLE_COUNTER_ROUNDS] >= 1);
+    TEST_ASSERT_TRUE(counters[AISLE_COUNTER_ROUND_MS] > 0 &&
+                     counters[AISLE_COUNTER_WAIT_MS] > 0); // both costs are told
+}
+
+static void test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one(void) {
+    setup_hall(20.0, 14.0);
+    hall_add(4.0, 4.0, 16.0, 10.0); // aisles of 4 m below and above
+    open_hall(2.0, 2.0, 0.0);
+    see(7, 10.0, 2.0, 0.0, 0.0);
+    go(1, 18.0, 2.0);
+    double highest = 0.0;
+    int arrived = -1;
+    for (int i = 0; i < 3600 && arrived < 0; i++) {
+        tick();
+        highest = fmax(highest, here.y);
+        arrived = has_arrived(18.0, 2.0) ? i : -1;
+    }
+    TEST_ASSERT_GREATER_THAN_INT(0, arrived);
+    TEST_ASSERT_TRUE(highest > 10.0);
+}
+
 // ---- stops and what follows them
 
 static void ticks(int n) {
@@ -375,6 +413,8 @@ int main(void) {
     RUN_TEST(test_a_vehicle_alone_follows_one_path_to_its_goal);
     RUN_TEST(test_a_person_far_away_changes_nothing);
     RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
+    RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
+    RUN_TEST(test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one);
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
     RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);
     RUN_TEST(test_a_stale_pose_brakes_the_vehicle_within_the_timeout);
