@@ -28,7 +28,7 @@
 // A host that wants the paper's world, where an obstacle may jump anywhere within 1 m in x and y at each iteration,
 // tells each one with that jump added to its radius and velocity 0, and takes the first line only: then a vehicle under
 // way is off every place the obstacle can reach meanwhile (passive safety); tools/paper/paper_local.c does so.
-// Memory: aisle_togo's and about 40 KiB, carved. Time: a round is O(cells reached) + steps * particles * iterations
+// Memory: aisle_togo's and about 90 KiB, carved. Time: a round is O(cells reached) + steps * particles * iterations
 // lines at most, sliced; a unit for each line and for what space.h and togo.h count.
 // Determinism: the same request gives the same bits however it is cut into steps.
 // Hits of seeds (tests/plan/test_local.c): U, spiral and dead-end aisle, 40 of 40 each; with the paper's F 0 of 40.

@@ -325,6 +325,107 @@ static void test_a_long_body_goes_round_with_its_heading_along(void) {
     }
 }
 
+// As in the paper's field: a point among blocks, its ways along their very faces.
+static void test_a_point_passes_corners_for_all_seeds_with_little_work(void) {
+    static const double at[8][4] = {
+        {6.36, 6.48, 7.65, 8.46},  {11.87, 8.37, 14.49, 10.95}, {9.91, 2.66, 12.74, 4.53},   {3.18, 2.02, 4.80, 4.71},
+        {9.03, 8.91, 10.69, 10.6}, {15.62, 4.45, 17.39, 6.74},  {16.89, 9.62, 17.95, 11.22}, {12.41, 6.0, 14.49, 7.12}};
+    hall_disc(0.001, -1.0F);
+    for (int i = 0; i < 8; i++) {
+        hall_add(at[i][0], at[i][1], at[i][2], at[i][3]);
+    }
+    open_as(AISLE_SPACE_FREE_TURN);
+    ask(1.0, 1.0, 19.0, 11.0);
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        request.seed = seed;
+        TEST_ASSERT_EQUAL(AISLE_OK, run(1000));
+        TEST_ASSERT_TRUE(spent < 20000U && local.round == 0U);
+    }
+}
+
+static void test_a_step_hangs_on_no_luck(void) {
+    spiral();
+    open_as(AISLE_SPACE_FREE_TURN);
+    ask(9.0, 7.0, 18.0, 6.0);
+    request.particles = 2;
+    request.iterations = 1;
+    TEST_ASSERT_EQUAL_UINT32(SEEDS, hits(1.1 * optimum()));
+}
+
+static void test_other_seeds_are_other_runs(void) {
+    u_pocket();
+    open_as(AISLE_SPACE_FREE_TURN);
+    ask(10.0, 6.0, 17.0, 6.0);
+    request.seed = 1;
+    TEST_ASSERT_EQUAL(AISLE_OK, run(1000));
+    const uint32_t first = spent;
+    request.seed = 2;
+    TEST_ASSERT_EQUAL(AISLE_OK, run(1000));
+    TEST_ASSERT_TRUE(first != spent);
+}
+
+static void test_an_old_way_that_is_clearly_longer_is_not_rejoined(void) {
+    const aisle_vec2 way[4] = {{2.0, 6.0}, {3.0, 11.0}, {17.0, 11.0}, {10.0, 6.0}};
+    open_as(AISLE_SPACE_FREE_TURN);
+    ask(2.0, 6.0, 10.0, 6.0);
+    request.way = way;
+    request.way_count = 4;
+    TEST_ASSERT_EQUAL(AISLE_OK, run(1000));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 8.0, local.length);
+}
+
+// A long body: each place of each line with its heading along, and the turning disc at each point between.
+static void expect_driven_along(void) {
+    const double margin = hall_vehicle.margin;
+    for (uint32_t i = 1; i < local.count; i++) {
+        const aisle_vec2 a = local.points[i - 1U], b = local.points[i];
+        const double length = aisle_vec2_distance(a, b), theta = atan2(b.y - a.y, b.x - a.x);
+        for (double s = 0.0; s <= length; s += 0.01) {
+            const aisle_vec2 p = aisle_vec2_lerp(a, b, s / length);
+            TEST_ASSERT_TRUE(hall_body_gap((aisle_pose2){p.x, p.y, theta}) >= margin);
+        }
+        if (i + 1U < local.count) {
+            TEST_ASSERT_TRUE((double)hall_disc_gap(b.x, b.y, hall_vehicle.outer_radius) >= margin);
+        }
+    }
+}
+
+static void test_a_long_body_turns_only_where_it_has_the_room(void) {
+    uint32_t found = 0;
+    hall_rectangle(1.8, 0.6, 0.05F);
+    for (uint64_t s = 0; s < 40; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        hall_begin(20.0, 12.0);
+        movers.count = 0;
+        for (int i = 0; i < 9; i++) {
+            const aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(3.5, 0.0), aisle_vec2_of(15.0, 10.5));
+            hall_add(p.x, p.y, p.x + 1.5, p.y + 1.5);
+        }
+        open_as(AISLE_SPACE_ALONG);
+        ask(1.5, 6.0, 18.5, 6.0);
+        request.seed = s;
+        if (run(1000) == AISLE_OK) {
+            found++;
+            expect_driven_along();
+        }
+    }
+    TEST_ASSERT_TRUE(found >= 34U);
+}
+
+static void test_without_room_to_turn_it_leaves_straight_ahead(void) {
+    hall_rectangle(1.8, 0.6, 0.05F);
+    hall_add(0.0, 0.0, 8.0, 5.4);
+    hall_add(0.0, 6.6, 8.0, 12.0); // an aisle of 1.2 m
+    open_as(AISLE_SPACE_ALONG);
+    ask(5.0, 6.0, 14.0, 10.0);
+    TEST_ASSERT_EQUAL(AISLE_OK, run(1000));
+    TEST_ASSERT_DOUBLE_WITHIN(AISLE_LOCAL_STRAIGHT, 0.0, atan2(local.points[1].y - 6.0, local.points[1].x - 5.0));
+    expect_driven_along();
+    request.heading = 1.5; // it can neither turn nor leave
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run(1000));
+    TEST_ASSERT_EQUAL(AISLE_LOCAL_STUCK, local.end);
+}
+
 static void refuse(aisle_local_request bad) {
     const aisle_local before = local;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_local_start(&local, &bad));
@@ -375,6 +476,12 @@ int main(void) {
     RUN_TEST(test_places_are_whole_numbers_in_the_papers_field);
     RUN_TEST(test_one_that_is_too_near_already_may_be_left);
     RUN_TEST(test_a_long_body_goes_round_with_its_heading_along);
+    RUN_TEST(test_a_point_passes_corners_for_all_seeds_with_little_work);
+    RUN_TEST(test_a_step_hangs_on_no_luck);
+    RUN_TEST(test_other_seeds_are_other_runs);
+    RUN_TEST(test_an_old_way_that_is_clearly_longer_is_not_rejoined);
+    RUN_TEST(test_a_long_body_turns_only_where_it_has_the_room);
+    RUN_TEST(test_without_room_to_turn_it_leaves_straight_ahead);
     RUN_TEST(test_bad_requests_change_nothing);
     return UNITY_END();
 }

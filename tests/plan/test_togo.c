@@ -117,6 +117,48 @@ static void test_a_shut_way_and_a_shut_goal_are_not_reached(void) {
                       search_closed(aisle_vec2_of(2.0, 2.0), aisle_vec2_of(2.0, 2.0), 0.1)); // the start's own
 }
 
+static aisle_status search_insisting(double reach, aisle_vec2 start, aisle_vec2 goal) {
+    aisle_status st;
+    uint32_t spent = 0;
+    aisle_togo_start(&togo, aisle_layout_grid(&hall_layout), reach, start, goal);
+    aisle_togo_insist(&togo, reach);
+    while ((st = aisle_togo_step(&togo, 1000, &spent)) == AISLE_BUSY) {
+    }
+    return st;
+}
+
+static void test_insisting_every_step_between_centres_has_the_room(void) {
+    for (int i = 0; i < 8; i++) {
+        hall_add(1.5 + 2.1 * i, 4.0 + 0.31 * i, 2.6 + 2.1 * i, 6.0 + 0.27 * i);
+    }
+    open_hall();
+    for (uint64_t s = 0; s < 60; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        const double reach = uniform(&rng, 0.001, 0.6);
+        const aisle_vec2 start = uniform_point(&rng, aisle_vec2_of(0.7, 0.7), aisle_vec2_of(8.8, 3.3));
+        aisle_vec2 p, q;
+        TEST_ASSERT_EQUAL(AISLE_OK, search_insisting(reach, start, aisle_vec2_of(18.0, 11.0)));
+        bool more = aisle_togo_next(&togo, start, &p);
+        TEST_ASSERT_TRUE(more);
+        for (int i = 0; i < 400 && (more = aisle_togo_next(&togo, p, &q)); i++, p = q) {
+            for (double f = 0.0; f <= 1.0; f += 0.05) {
+                const aisle_vec2 at = aisle_vec2_lerp(p, q, f);
+                const bool at_goal = aisle_togo_at(&togo, q) <= 0.0;
+                TEST_ASSERT_TRUE(at_goal || hall_disc_gap(at.x, at.y, reach) >= 0.0L);
+            }
+        }
+        TEST_ASSERT_TRUE(aisle_togo_at(&togo, p) <= 0.0);
+    }
+}
+
+static void test_insisting_a_passage_of_just_the_width_is_not_seen(void) {
+    const aisle_vec2 start = {2.0, 2.0}, goal = {18.0, 3.0}; // 2 m above the wall
+    TEST_ASSERT_EQUAL(AISLE_OK, search_insisting(0.8, start, goal));
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, search_insisting(0.99, start, goal));
+    uint32_t spent;
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.99, start, goal, 1000, &spent));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_it_is_the_way_within_a_tenth_and_two_cells);
@@ -125,5 +167,7 @@ int main(void) {
     RUN_TEST(test_a_map_of_more_cells_than_it_holds_is_seen_coarser);
     RUN_TEST(test_places_closed_are_gone_round);
     RUN_TEST(test_a_shut_way_and_a_shut_goal_are_not_reached);
+    RUN_TEST(test_insisting_every_step_between_centres_has_the_room);
+    RUN_TEST(test_insisting_a_passage_of_just_the_width_is_not_seen);
     return UNITY_END();
 }

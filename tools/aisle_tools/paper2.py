@@ -159,7 +159,7 @@ def judge(field: Field, found: list[dict]) -> dict:
 
 
 def print_head() -> None:
-    print("row: obstacles/static/moving/swarm/targets; lengths in m, medians; ms: planning of a whole episode, processor time")
+    print("row: obstacles/static/moving/swarm/targets; lengths: m, medians; ms: an episode's planning, processor time")
     print(
         f"{'row':<16} {'paper':>7} {'s':>5} {'optimum':>8}  {'method':<18} "
         f"{'arrived':>11} {'touched':>7} {'length':>7} {'longest':>8} "
