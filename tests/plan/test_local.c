@@ -426,6 +426,53 @@ static void test_without_room_to_turn_it_leaves_straight_ahead(void) {
     TEST_ASSERT_EQUAL(AISLE_LOCAL_STUCK, local.end);
 }
 
+// The paper's world: squares of 1.4 m jump within (-1, 1) m; told as discs about all they can reach.
+static bool is_off_all(const aisle_vec2 *square, aisle_vec2 p, double need) {
+    for (int i = 0; i < 8; i++) {
+        if (fabs(p.x - square[i].x) < 0.7 + need && fabs(p.y - square[i].y) < 0.7 + need) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static uint32_t drive_among_jumps(uint64_t seed) {
+    aisle_rng rng = aisle_rng_seed(seed);
+    aisle_vec2 square[8], at = {1.0, 6.0};
+    uint32_t steps = 0;
+    for (int i = 0; i < 8; i++) {
+        square[i] = uniform_point(&rng, aisle_vec2_of(4.0, 1.0), aisle_vec2_of(16.0, 11.0));
+    }
+    for (; steps < 400U && at.x < 18.9; steps++) {
+        movers.count = 0;
+        for (int i = 0; i < 8; i++) {
+            add_mover(square[i].x, square[i].y, 0.0, 0.0, hypot(1.7, 1.7));
+        }
+        ask(at.x, at.y, 19.0, 6.0);
+        request.seed = seed * 1000U + steps;
+        const bool waits = run(1000) != AISLE_OK || !is_off_all(square, at, 1.7);
+        const double far = waits ? 0.0 : fmin(aisle_vec2_distance(at, local.points[1]), 5.0);
+        for (double s = 0.0; !waits && s <= far; s += 0.01) {
+            const aisle_vec2 p = aisle_vec2_lerp(at, local.points[1], s / aisle_vec2_distance(at, local.points[1]));
+            TEST_ASSERT_TRUE(is_off_all(square, p, 1.0 + 0.3)); // the body, wherever they jump
+        }
+        at = waits ? at : aisle_vec2_lerp(at, local.points[1], far / aisle_vec2_distance(at, local.points[1]));
+        for (int i = 0; i < 8; i++) {
+            const aisle_vec2 by = uniform_point(&rng, aisle_vec2_of(-1.0, -1.0), aisle_vec2_of(1.0, 1.0));
+            square[i].x = fmin(fmax(square[i].x + by.x, 1.0), 19.0);
+            square[i].y = fmin(fmax(square[i].y + by.y, 1.0), 11.0);
+        }
+    }
+    return steps;
+}
+
+static void test_among_blocks_that_jump_each_line_is_off_all_they_can_reach(void) {
+    open_as(AISLE_SPACE_FREE_TURN);
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        TEST_ASSERT_TRUE(drive_among_jumps(seed) < 400U); // it arrives
+    }
+}
+
 static void refuse(aisle_local_request bad) {
     const aisle_local before = local;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_local_start(&local, &bad));
@@ -482,6 +529,7 @@ int main(void) {
     RUN_TEST(test_an_old_way_that_is_clearly_longer_is_not_rejoined);
     RUN_TEST(test_a_long_body_turns_only_where_it_has_the_room);
     RUN_TEST(test_without_room_to_turn_it_leaves_straight_ahead);
+    RUN_TEST(test_among_blocks_that_jump_each_line_is_off_all_they_can_reach);
     RUN_TEST(test_bad_requests_change_nothing);
     return UNITY_END();
 }
