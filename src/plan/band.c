@@ -336,6 +336,15 @@ static bool sweep_run(sweep *self) {
     return goes_on;
 }
 
+// Who is late is everywhere later, but none brakes after the last one, so none is at rest later than it.
+static void be_late(aisle_band *self, double late) {
+    const double last = self->n > 0U ? self->at[self->n - 1U].until : 0.0;
+    for (uint32_t k = 0; k < self->n; k++) {
+        aisle_band_place *at = &self->at[k];
+        at->until = aisle_max(at->until, aisle_min(at->until + late, last));
+    }
+}
+
 void aisle_band_make(aisle_band *self, const aisle_band_motion *motion) {
     const aisle_vehicle *vehicle = motion->vehicle;
     AISLE_ASSERT(motion->lease > 0.0 && motion->spacing > 0.0 && motion->cap > 0.0);
@@ -353,6 +362,7 @@ void aisle_band_make(aisle_band *self, const aisle_band_motion *motion) {
     while (it.walk.t < it.last && sweep_run(&it) && !self->overflow && aisle_band_walk_run(&it.walk)) {
         begin_run(&it, 0.0);
     }
+    be_late(self, motion->late);
 }
 
 // ---- discs

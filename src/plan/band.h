@@ -45,6 +45,7 @@ typedef struct aisle_band_motion {
     double v, cap;  // m/s
     double rested;  // s, that it has been at rest where it is, of the rest before the piece it is to begin (u = 0)
     double lease;   // s
+    double late;    // s >= 0, that it may be behind its times; at most until the last one has braked
     double spacing; // m, of places
 } aisle_band_motion;
 

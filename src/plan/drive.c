@@ -328,7 +328,8 @@ static void begin_moving(aisle_drive *self, const aisle_drive_path *path, aisle_
                                           .goals = self->goals + path->passed,
                                           .num_goals = self->num_goals - path->passed,
                                           .now_us = self->cycle_us,
-                                          .lease = self->lease};
+                                          .lease = self->lease,
+                                          .late = self->world.vehicle->reaction_time};
     aisle_verify_moving_start(&self->moving, &request);
     self->stage = stage;
 }
@@ -375,6 +376,7 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
                                         .v = moves ? self->v : 0.0,
                                         .base = moves ? &self->base : NULL,
                                         .now_us = self->cycle_us,
+                                        .late = self->world.vehicle->reaction_time,
                                         .lease = moves ? PACE_LEASE : START_LEASE,
                                         .first = level,
                                         .current = present_level(self)};

@@ -315,6 +315,7 @@ static aisle_status make_level(aisle_pace *self, uint32_t *spent) {
                                       .v = request->v,
                                       .cap = (double)INFINITY,
                                       .lease = lease_of(self),
+                                      .late = request->late,
                                       .spacing = aisle_max(SPACING, reach / PLACES)};
     aisle_band_make(&self->band, &motion);
     *spent += self->band.n / 8U;

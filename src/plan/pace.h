@@ -56,6 +56,7 @@ typedef struct aisle_pace_request {
     const aisle_verify_base *base; // of what is under way, its place being `at`, too; NULL: nothing is
     int64_t now_us;
     double lease;     // s > 0
+    double late;      // s >= 0, that the vehicle may be later than its path says beyond AISLE_PACE_LAG
     uint32_t first;   // fastest level to be tried; AISLE_PACE_STOP: stop
     uint32_t current; // level of what is under way; AISLE_PACE_STOP if it rests or nothing is
 } aisle_pace_request;

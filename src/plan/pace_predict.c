@@ -80,6 +80,7 @@ static aisle_band_motion motion_of(const aisle_pace_predict *self, double cap) {
                                .cap = cap,
                                .rested = self->rested,
                                .lease = self->request.lease,
+                               .late = self->request.late,
                                .spacing = aisle_max(SPACING, reach / PLACES)};
 }
 

@@ -30,6 +30,7 @@ typedef struct aisle_pace_predict_request {
     double v;           // m/s >= 0
     uint32_t until;     // the waypoint it is to get to, not before `at`; rest there does not count
     int64_t now_us;
+    double late;  // as in pace.h
     double lease; // s > 0, that its speeds are to be safe for: the shortest one that is used; it lets pass most
 } aisle_pace_predict_request;
 

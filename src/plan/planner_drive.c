@@ -218,6 +218,7 @@ static void begin_weighing(aisle_planner *self, aisle_weighing what, const aisle
                                                 .v = what == AISLE_WEIGHING_WAIT ? self->drive.v : 0.0,
                                                 .until = next_goal_of(w, n),
                                                 .now_us = self->now_us,
+                                                .late = self->vehicle.reaction_time,
                                                 .lease = WEIGHED_LEASE};
     aisle_pace_predict_start(&self->predict, &request);
     self->weighing = what;

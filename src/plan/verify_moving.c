@@ -45,7 +45,8 @@ static void set_bounds(aisle_verify_moving *self) {
     const aisle_vehicle *vehicle = self->request.vehicle;
     const double driven = vehicle->reaction_time + self->request.lease, v = fastest(self);
     self->window = v * driven + 0.5 * v * v / vehicle->d_max;
-    self->last = driven + aisle_max(v / vehicle->d_max, vehicle->omega_max / vehicle->alpha_max) + AISLE_DRIVE_LAG;
+    self->last = driven + aisle_max(v / vehicle->d_max, vehicle->omega_max / vehicle->alpha_max) + AISLE_DRIVE_LAG +
+                 self->request.late;
     self->box = (aisle_aabb){{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
 }
 
@@ -132,7 +133,8 @@ static aisle_status step_near(aisle_verify_moving *self) {
 
 // ---- stretches
 
-static double theta_at(const aisle_moving_stretch *stretch, double q) {
+// *braked: when the motion that is at q last began to brake, or is there if it has not.
+static double theta_at(const aisle_moving_stretch *stretch, double q, double *braked) {
     const aisle_moving_phase *phase = &stretch->phase;
     double square = phase->v0 * phase->v0 + 2.0 * phase->a * (q - phase->from), s = q, brake = 0.0;
     if (stretch->down > 0.0) {
@@ -142,7 +144,8 @@ static double theta_at(const aisle_moving_stretch *stretch, double q) {
     }
     const double v = sqrt(aisle_max(square, 0.0)), way = aisle_max(s - phase->from, 0.0);
     const double time = phase->v0 + v > 0.0 ? 2.0 * way / (phase->v0 + v) : 0.0;
-    return phase->begins + time + brake + phase->late;
+    *braked = phase->begins + time + phase->late;
+    return *braked + brake;
 }
 
 // Where the sweep is when a run begins.
@@ -273,12 +276,19 @@ static double run_at(const aisle_verify_moving *self, double u) {
     return self->origin + u * aisle_moving_size(&self->curve);
 }
 
-static double later_at(const aisle_verify_moving *self, double u) {
-    return theta_at(&self->stretch, run_at(self, u)) + AISLE_DRIVE_LAG;
+// No motion is at a place of [lo, hi] later than that, s from now. Who is late begins to brake late, but no later than the last
+// one does; this grows from hi to lo where the rest of it grows from lo to hi.
+static double later_at(const aisle_verify_moving *self, double lo, double hi) {
+    const aisle_moving_request *request = &self->request;
+    double braked;
+    (void)theta_at(&self->stretch, run_at(self, lo), &braked);
+    const double left = request->lease + request->vehicle->reaction_time - braked;
+    const double theta = theta_at(&self->stretch, run_at(self, hi), &braked);
+    return theta + AISLE_DRIVE_LAG + aisle_clamp(left, 0.0, request->late);
 }
 
 static bool take_interval(aisle_verify_moving *self) {
-    const double hi = self->hi[self->depth - 1U], last = later_at(self, hi);
+    const double hi = self->hi[self->depth - 1U], last = later_at(self, self->lo, hi);
     aisle_moving_sweep_over(self, self->lo, hi, &self->sweep);
     self->sweep.at_us = at_us(self, last);
     self->intervals++;

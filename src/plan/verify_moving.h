@@ -15,7 +15,7 @@
 // a) at the instant that this one begins to brake, D = d_max:
 //     q = s + v^2 / 2D,  theta = t + v / D;   from q:  v^2 = (v0^2 + 2 a (q - s0)) D / (a + D)
 // or, where none rests, before the first of these places, the one with tau = 0. The sweep covers the path up to
-// the last place of rest and asks each place at theta + AISLE_DRIVE_LAG.
+// the last place of rest and asks each place at theta + AISLE_DRIVE_LAG, and later by `late` as far as braking does not begin after the last of them.
 // Intervals of the sweep, as in verify.h: the hull of the footprint at both ends, grown by margin, the sagittas of arc and
 // turn and AISLE_VERIFY_EPSILON, is proved off the reaches at the last instant of the interval. A direction in which they are
 // apart is enough. What is not proved is halved, for the movers left alone, until each point of the body moves by less than
@@ -57,6 +57,9 @@ typedef struct aisle_moving_request {
     uint32_t num_goals;
     int64_t now_us;
     double lease; // s, [0, 60]
+    double
+        late; // s >= 0, that the vehicle may be behind its path's times beyond AISLE_DRIVE_LAG: who may take the whole
+              // reaction_time to set out, or to obey a path that is slower than the one before, is late by so much
 } aisle_moving_request;
 
 // ---- the verifier's own
