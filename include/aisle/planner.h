@@ -18,12 +18,14 @@
 // Order: inputs take effect in the order of submit(). A request (goal list, query) is planned on the
 // layout and vehicle in force when its turn comes; while one waits or is planned, layouts and vehicles are
 // not taken (AISLE_BUSY).
-// Missions: the newest goal list is the mission. Its path is leased for AISLE_LEASE_US and sent again every
-// AISLE_LEASE_RESEND_US while the pose is fresh, localized and on the layout's map, no moving obstacle is reported and
-// no HOLD is on; a path found meanwhile is kept back until then. A list refused for want of a pose or for a moving
-// obstacle is planned again when that is over, every list for a new layout or vehicle, each from the newest pose; the path
-// that was out is withdrawn before (MAP_MISMATCH, CONFLICT with the vehicle's revision), unless it is the same vehicle by
-// all but its revision: then the path goes on under that one. What
+// Missions: the newest goal list is the mission. Its path is leased for as long as passive safety is proved among the moving
+// obstacles, at most AISLE_LEASE_US, and sent again at half of that, while the pose is fresh, localized and on the layout's
+// map, every source of obstacles that spoke keeps speaking and no HOLD is on. What follows the vehicle (plan/drive.h): each
+// pose and snapshot of obstacles is a cycle that keeps, slows or brakes what is out; a changed path is the next revision,
+// begins at the vehicle's place (v > 0 there) and keeps the base (num_base). Where the vehicle must be stopped while it moves
+// the path says STOP and why; at rest NONE. A list refused for want of a pose is planned again when there is one, every list
+// for another layout or vehicle: a vehicle at rest has its path withdrawn before (MAP_MISMATCH, CONFLICT with the vehicle's
+// revision), one that moves drives on what is proved anew; a vehicle that is the same by all but its revision goes on. What
 // names a list stays known when it is finished or cancelled: sent again it is a duplicate and moves nobody.
 // Goals (plan/mission.h has all the rules): one counts as reached when the vehicle has rested within its tolerances for its
 // dwell, by the poses' own time, as the goal being driven to (status_msg.goal_id). What is reached stays reached, through
