@@ -21,6 +21,16 @@ build_variant() { # name compiler flags...
     }
 }
 
+drive_log() { # a vehicle that is driven among people: re-paced, stopped, sent round
+    local scenario=tests/data/scenarios/clutter_50.json start=$work/start.txt
+    "$aisle" map --log "$start" "$scenario"
+    "$aisle" vehicle --log "$start" --footprint 1.0x0.7 --margin 0.1
+    "$aisle" goal --log "$start" --goal 48,48 --pose 2,2,0.7
+    cmake --preset release >/dev/null
+    cmake --build --preset release --target aisle-sim >/dev/null
+    build/release/aisle-sim "$start" --movers person:4,adversarial:1 --seed 1 --time 45 --out "$work/drive.log" || true
+}
+
 make_logs() { # a scanned map with its goals, rooms of polygons with a disc and with a polygon footprint, a car, zones
     rm -f "$work"/*.log
     {
@@ -36,6 +46,7 @@ make_logs() { # a scanned map with its goals, rooms of polygons with a disc and 
             "$aisle" query --log "$work/$name.log" --scenario "tests/data/scenarios/$name.json" --objective shortest \
                 --planner pso --seed 7
         done
+        drive_log
     } >"$work/logs.txt"
     build/venv/bin/python tools/gates/determinism_logs.py make "$work"
 }
