@@ -23,8 +23,9 @@
 // is exact. A mover is believed to keep its velocity for `drift` metres of its way (one that stands: for ever), then it is
 // left out. One that is nearer than that at the very beginning may be left, but not approached. Body: with its
 // heading along the line (ALONG), or its turning disc (FREE_TURN). Prediction is quality, not safety: the moving
-// proof stands by itself. ALONG: points lie only where the body can turn; the first line leads on straight
-// (AISLE_LOCAL_STRAIGHT) unless it can turn at `from`.
+// proof stands by itself. ALONG: points lie only where the body can turn, so it takes
+// no aisle too narrow for that and longer than the range; the first line leads on straight (AISLE_LOCAL_STRAIGHT) unless
+// it can turn at `from`.
 // A host that wants the paper's world, where an obstacle may jump anywhere within 1 m in x and y at each iteration,
 // tells each one with that jump added to its radius and velocity 0, and takes the first line only: then a vehicle under
 // way is off every place the obstacle can reach meanwhile (passive safety); tools/paper/paper_local.c does so.

@@ -1,4 +1,5 @@
 #include "base/angle.h"
+#include "base/check.h"
 #include "plan/route_stages.h"
 
 #include <math.h>
@@ -6,6 +7,8 @@
 
 #define AHEAD 1.0        // m, that a vehicle in motion goes straight on before it bends
 #define AHEAD_LEAST 0.25 // m
+#define TINY 1e-3        // m
+#define SPEED_LEAST 0.01 // m/s
 #define BEND_MAX 1.3     // rad, by which a way may leave its heading without a stop
 
 // m, kept off movers beside the margin: what a person can do before a vehicle at creep speed rests, with ease and at the
@@ -31,7 +34,8 @@ static aisle_vec2 bends_from(aisle_route *self) {
     aisle_sincos(self->request.start.theta, &unit.y, &unit.x);
     for (double ahead = AHEAD; ahead >= AHEAD_LEAST; ahead *= 0.5) {
         const aisle_vec2 to = aisle_vec2_add(from, aisle_vec2_scale(unit, ahead));
-        if (aisle_space_sweep_free(&self->space, from, to, &self->spent)) {
+        const bool is_before_goal = ahead + TINY < self->legs[self->leg].bound;
+        if (is_before_goal && aisle_space_sweep_free(&self->space, from, to, &self->spent)) {
             return to;
         }
     }
@@ -48,13 +52,14 @@ static void begin_search(aisle_route *self) {
                                          .movers = self->movers,
                                          .from_us = self->movers_us,
                                          .from = self->bend,
-                                         .heading = leg->heading,
+                                         .heading = fabs(leg->heading) <= AISLE_ANGLE_MAX ? leg->heading : 0.0,
                                          .goal = aisle_route_place(&self->request.goals[self->leg]),
-                                         .speed = 0.5 * self->vehicle->v_max,
-                                         .range = (double)options->step,
+                                         .speed = aisle_max(0.5 * self->vehicle->v_max, SPEED_LEAST),
+                                         .range = aisle_min((double)options->step, AISLE_LOCAL_RANGE_MAX),
                                          .safety = safety[leg->attempt % SAFETIES],
                                          .seed = (uint64_t)(uint32_t)options->seed};
-    self->local_is_there = aisle_local_start(&self->local, &request) != AISLE_OK; // its ends are one place
+    const aisle_status st = aisle_local_start(&self->local, &request);
+    AISLE_ASSERT(st == AISLE_OK); // its ends are apart, all else was checked
 }
 
 static void begin_leg(aisle_route *self) {
