@@ -144,10 +144,10 @@ typedef enum aisle_counter {
     AISLE_COUNTER_CACHE_KEPT,       // answers remembered that a changed layout does not touch
     AISLE_COUNTER_CACHE_DROPPED,    // and that it does, or may
     AISLE_COUNTER_CACHE_SPOILED,    // answers remembered whose bytes had changed or whose proof failed
+    AISLE_COUNTER_LAYOUT_WORK,      // rows and polygons gone through when layouts and patches were built
     AISLE_COUNTER_ROUNDS,           // ways round moving obstacles taken
     AISLE_COUNTER_WAIT_MS,          // of the last one weighed: ms to the next goal by waiting or slowing down,
     AISLE_COUNTER_ROUND_MS,         // and by going round
-    AISLE_COUNTER_LAYOUT_WORK,      // rows and polygons gone through when layouts and patches were built
     AISLE_COUNTER_COUNT
 } aisle_counter;
 
