@@ -161,6 +161,19 @@ static void test_any_heading_and_any_speed_are_borne(void) {
     }
 }
 
+static void test_movers_are_seen_where_they_are_when_the_vehicle_is_at_the_start(void) {
+    open_hall();
+    add_mover(77, 8.0, 6.0, -1.0, 0.3); // on the way, and off it by then
+    mover[0].utime = from_us - 7000000;
+    ask(5.0, 6.0, 18.0, 6.0);
+    plan(1000);
+    (void)proof();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 13.0, (double)answer.length);
+    mover[0].at.x = 15.0; // on it by then
+    plan(1000);
+    TEST_ASSERT_TRUE(aisle_route_answer(&route) == NULL || proof()->value > 13.05);
+}
+
 static void test_movers_in_both_aisles_are_named(void) {
     two_aisles();
     add_mover(77, 10.0, 9.0, 0.0, 1.0);
@@ -304,6 +317,7 @@ int main(void) {
     RUN_TEST(test_where_there_is_less_room_less_is_kept);
     RUN_TEST(test_a_range_beyond_all_is_no_other_than_the_longest);
     RUN_TEST(test_any_heading_and_any_speed_are_borne);
+    RUN_TEST(test_movers_are_seen_where_they_are_when_the_vehicle_is_at_the_start);
     RUN_TEST(test_movers_in_both_aisles_are_named);
     RUN_TEST(test_that_none_was_found_among_what_is_built_is_called_no_proof);
     RUN_TEST(test_a_vehicle_in_motion_goes_straight_on_before_it_bends);
