@@ -15,6 +15,9 @@ import encounter_halls as halls  # noqa: E402
 import encounters  # noqa: E402
 
 
+NOT_THERE = {"arrived": False, "arrival": None, "time": None}
+
+
 def gap(box: tuple, x: float, y: float) -> float:
     return math.hypot(max(box[0] - x, x - box[2], 0.0), max(box[1] - y, y - box[3], 0.0))
 
@@ -49,15 +52,16 @@ def test_walls_have_doors_and_aisles_their_width() -> None:
 
 
 def outcome(sim: dict, known: encounters.Best = encounters.Best("found", 20.0, 15.0)) -> encounters.Outcome:
-    base = {"arrived": True, "encounters": 3, "collisions": 0, "hall_collisions": 0, "contacts_at_rest": 1}
-    base |= {"revisions": 9, "stops": 0, "time": 33.0, "optimum": 17.0, "work_ms": {"p50": 0.1, "p99": 1.0, "max": 9.0}}
+    base = {"arrived": True, "arrival": 40.0, "encounters": 3, "collisions": 0, "hall_collisions": 0}
+    base |= {"contacts_at_rest": 1, "revisions": 9, "stops": 0, "time": 33.0, "optimum": 17.0}
+    base |= {"work_ms": {"p50": 0.1, "p99": 1.0, "max": 9.0}}
     base |= {"visited": 0, "goals": 1, "paths": [], "seconds": 60.0}
     return encounters.Outcome(halls.draw("open", "person", 1), base | sim, known)
 
 
 def test_the_oracles_loss_is_added_to_the_way_alone() -> None:
     assert outcome({}).over(encounters.Best("found", 20.0, 15.0)) == pytest.approx(33.0 / 22.0)
-    assert math.isnan(outcome({"arrived": False, "time": None}).over(encounters.Best("found", 20.0, 15.0)))
+    assert math.isnan(outcome(NOT_THERE).over(encounters.Best("found", 20.0, 15.0)))
     assert math.isnan(outcome({}).over(encounters.Best("none")))
 
 
@@ -65,8 +69,8 @@ def test_what_was_possible_is_what_arrived_or_what_the_oracle_finds() -> None:
     row = encounters.Row()
     row.add(outcome({}))
     row.add(outcome({}, encounters.Best("none")))
-    row.add(outcome({"arrived": False, "time": None}))
-    row.add(outcome({"arrived": False, "time": None}, encounters.Best("none")))
+    row.add(outcome(NOT_THERE))
+    row.add(outcome(NOT_THERE, encounters.Best("none")))
     assert (row.sums["drives"], row.sums["arrived"], row.sums["possible"]) == (4, 2, 3)
     assert row.success == pytest.approx(2.0 / 3.0)
     assert len(row.over_oracle) == 1
@@ -76,8 +80,10 @@ def test_failures_are_told_by_name(capsys: pytest.CaptureFixture) -> None:
     failures: list = []
     encounters.tell_failure(outcome({}), failures)
     encounters.tell_failure(outcome({"collisions": 1}), failures)
+    encounters.tell_failure(outcome(NOT_THERE), failures)
     encounters.tell_failure(outcome({"arrived": False}), failures)
-    assert [line.split(":")[0] for line in failures] == ["open/person/1"] * 2
+    assert [line.split(":")[0] for line in failures] == ["open/person/1"] * 3
+    assert "does not say so" in failures[2]
     assert "COLLISION" in failures[0] and "oracle: found" in failures[1]
     assert "COLLISION" in capsys.readouterr().err
 

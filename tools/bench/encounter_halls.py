@@ -184,7 +184,7 @@ def draw_stops(rng: random.Random, name: str, width: float, height: float, boxes
     return stops
 
 
-def write_log(drive: Drive, path: Path, prefix: str) -> None:
+def write_log(drive: Drive, path: Path, prefix: str, objective: int = 0) -> None:
     """The set-up as aisle-sim wants it."""
     log = LogWriter(path, prefix)
     for name, part in layouts.make_messages(drive.world, 1, 1, 0):
@@ -193,11 +193,13 @@ def write_log(drive: Drive, path: Path, prefix: str) -> None:
     pose = goals.make_pose(drive.start, 1, 1)
     pose.utime = 0
     log.publish("POSE", pose)
-    log.publish("GOALS", goal_list(drive))
+    goal_list = make_goals(drive)
+    goal_list.options.objective = objective
+    log.publish("GOALS", goal_list)
     log.close()
 
 
-def goal_list(drive: Drive) -> goal_list_t:
+def make_goals(drive: Drive) -> goal_list_t:
     msg = goal_list_t()
     msg.goal_list_id = msg.goal_list_revision = msg.map_id = 1
     for i, (x, y, dwell) in enumerate(drive.goals):

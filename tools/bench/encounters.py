@@ -40,7 +40,7 @@ import encounter_halls as halls
 import lcm
 import offline
 from aisle import goal_list_t, layout_t, obstacle_t, obstacles_t, vehicle_t
-from aisle_tools import vehicle
+from aisle_tools import names, vehicle
 
 EPOCH_US = 1600000000000000  # of aisle-sim's clock
 TIME_LIMIT = 180.0  # s of a drive
@@ -69,7 +69,8 @@ class Outcome:
 
     @property
     def arrived(self) -> bool:
-        return bool(self.sim["arrived"])
+        """All goals visited, by the simulator's judge."""
+        return self.sim["arrival"] is not None
 
     @property
     def possible(self) -> bool:
@@ -143,10 +144,9 @@ def main() -> int:
     if args.mass > 0:
         return mass(args)
     start = time.monotonic()
-    names = [one.split("/") for one in args.only] if args.only else None
-    asked = [(h, k, int(s)) for h, k, s in names] if names else [
-        (h, k, args.seed + i) for h in args.halls for k in args.kinds for i in range(args.drives)
-    ]
+    asked = [(h, k, args.seed + i) for h in args.halls for k in args.kinds for i in range(args.drives)]
+    if args.only:
+        asked = [(h, k, int(s)) for h, k, s in (one.split("/") for one in args.only)]
     rows: dict = {}
     failures = []
     with ThreadPoolExecutor(args.jobs) as pool:
@@ -168,6 +168,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--kinds", nargs="+", choices=halls.KINDS, default=halls.KINDS)
     parser.add_argument("--only", metavar="NAME", action="append", help="HALL/KIND/SEED")
     parser.add_argument("--mass", type=int, default=0, metavar="N", help="encounters of each kind by --batch")
+    parser.add_argument("--objective", default="safest", metavar="O", help="of the goals but in hall drawn")
     parser.add_argument("--no-oracle", action="store_true")
     parser.add_argument("--wary", type=float, default=WARY, metavar="S", help="delays of the wary oracle, default 0.55")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="drives at once; more make milliseconds worse")
@@ -199,7 +200,7 @@ def simulate(args: argparse.Namespace, drive: halls.Drive, folder: Path) -> dict
     if drive.hall == halls.DRAWN:
         words += ["--drawn", drive.seed, "--kind", drive.kind]
     else:
-        halls.write_log(drive, folder / "setup.log", offline.PREFIX)
+        halls.write_log(drive, folder / "setup.log", offline.PREFIX, names.option_value(args.objective, names.OBJECTIVES))
         words += [folder / "setup.log", "--movers", drive.movers_option, "--seed", drive.seed, "--time", TIME_LIMIT]
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1) or not (folder / "sim.json").stat().st_size:
@@ -298,6 +299,8 @@ def tell_failure(outcome: Outcome, failures: list) -> None:
     what = []
     if sim["collisions"] + sim["hall_collisions"] > 0:
         what.append(f"COLLISION ({sim['collisions']} with movers, {sim['hall_collisions']} with the hall)")
+    if outcome.arrived and not sim["arrived"]:
+        what.append("there, but the planner does not say so")
     if not outcome.arrived:
         ways = "; ".join(f"{p['status']}/{p['cause']} {p['count']}" for p in sim["paths"])
         what.append(f"not arrived, {sim['visited']} of {sim['goals']} goals, oracle: {outcome.known.verdict}; {ways}")
@@ -338,18 +341,22 @@ COLUMNS = {  # of a row: how it is printed, from its figures
 def print_rows(rows: dict) -> Row:
     heads = " ".join(format(head, form.split(".")[0]) for head, (_, form) in COLUMNS.items())
     print(f"{'hall':<10} {'movers':<12} {heads}")
-    total = Row()
+    total = merged(list(rows.values()))
     for (hall, kind), row in sorted(rows.items()):
         print_row(hall, kind, row)
-        total.merge(row)
     for kind in dict.fromkeys(k for _, k in rows):
-        part = Row()
-        for (_, k), row in rows.items():
-            if k == kind:
-                part.merge(row)
-        print_row("all", kind, part)
+        print_row("all", kind, merged([row for (_, k), row in rows.items() if k == kind]))
+    if any(k == "adversarial" for _, k in rows):
+        print_row("all", "all others", merged([row for (_, k), row in rows.items() if k != "adversarial"]))
     print_row("all", "all", total)
     return total
+
+
+def merged(parts: list[Row]) -> Row:
+    whole = Row()
+    for part in parts:
+        whole.merge(part)
+    return whole
 
 
 def print_row(hall: str, kind: str, row: Row) -> None:
@@ -362,31 +369,39 @@ def write(args: argparse.Namespace, rows: dict, total: Row, failures: list) -> N
     if args.failures is not None:
         args.failures.write_text("".join(line + "\n" for line in failures))
     if args.json is not None:
-        told = [{"hall": h, "kind": k} | row.figures() for (h, k), row in sorted(rows.items())]
-        data = {"seed": args.seed, "rows": told, "all": total.figures(), "failures": failures}
+        told = [{"hall": h, "kind": k} | known(row.figures()) for (h, k), row in sorted(rows.items())]
+        data = {"seed": args.seed, "rows": told, "all": known(total.figures()), "failures": failures}
         args.json.write_text(json.dumps(data, indent=1) + "\n")
+
+
+def known(figures: dict) -> dict:
+    """JSON has no NAN."""
+    return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in figures.items()}
 
 
 # ---- by the thousand
 
 
 def mass(args: argparse.Namespace) -> int:
-    told = []
-    for kind in args.kinds:
-        with tempfile.TemporaryDirectory() as folder:
-            out = Path(folder) / "batch.json"
-            words = [args.sim, "--batch", args.mass, "--kind", kind, "--seed", args.seed, "--json", out]
-            done = subprocess.run([str(w) for w in words], capture_output=True, text=True, check=False)
-            print(done.stdout, end="", flush=True)
-            if done.returncode not in (0, 1) or not out.exists():
-                sys.exit(f"aisle-sim --batch: exit {done.returncode}\n{done.stderr}")
-            told.append(json.loads(out.read_text()))
+    with ThreadPoolExecutor(args.jobs) as pool:
+        told = list(pool.map(lambda kind: batch(args, kind), args.kinds))
     met, hits = (sum(t[k] for t in told) for k in ("encounters", "collisions"))
     hits += sum(t["hall_collisions"] for t in told)
     print(f"encounters {met}, collisions while moving {hits}")
     if args.json is not None:
         args.json.write_text(json.dumps(told, indent=1) + "\n")
     return 1 if hits > 0 else 0
+
+
+def batch(args: argparse.Namespace, kind: str) -> dict:
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "batch.json"
+        words = [args.sim, "--batch", args.mass, "--kind", kind, "--seed", args.seed, "--json", out]
+        done = subprocess.run([str(w) for w in words], capture_output=True, text=True, check=False)
+        print(done.stdout, end="", flush=True)
+        if done.returncode not in (0, 1) or not out.exists():
+            sys.exit(f"aisle-sim --batch: exit {done.returncode}\n{done.stderr}")
+        return json.loads(out.read_text())
 
 
 if __name__ == "__main__":
