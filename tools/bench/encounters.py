@@ -200,7 +200,8 @@ def simulate(args: argparse.Namespace, drive: halls.Drive, folder: Path) -> dict
     if drive.hall == halls.DRAWN:
         words += ["--drawn", drive.seed, "--kind", drive.kind]
     else:
-        halls.write_log(drive, folder / "setup.log", offline.PREFIX, names.option_value(args.objective, names.OBJECTIVES))
+        objective = names.option_value(args.objective, names.OBJECTIVES)
+        halls.write_log(drive, folder / "setup.log", offline.PREFIX, objective)
         words += [folder / "setup.log", "--movers", drive.movers_option, "--seed", drive.seed, "--time", TIME_LIMIT]
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1) or not (folder / "sim.json").stat().st_size:
