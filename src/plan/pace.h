@@ -53,7 +53,7 @@ typedef struct aisle_pace_request {
     const float *dwell;            // [n] s of rest at each, as in profile.h; NULL: none
     aisle_place at;                // where the vehicle is on it
     double v;                      // m/s >= 0, and how fast
-    const aisle_verify_base *base; // of what is under way, its place being `at`, too; NULL: nothing is
+    const aisle_verify_base *base; // of what is under way, its place being `at`, too; NULL: nothing is, or it rests
     int64_t now_us;
     double lease;     // s > 0
     double late;      // s >= 0, that the vehicle may be later than its path says beyond AISLE_PACE_LAG

@@ -333,6 +333,9 @@ static void test_paths_under_way_are_taken_over_on_their_base_however_the_level_
                 fabs(aisle_motion_length_to(path, count, request.at) - before - made) > 1e-6) {
                 break; // back over its own track within the window
             }
+            if (v > 0.0 && v < AISLE_PACE_RESTING) {
+                break; // so slow is at rest, and nothing is under way then
+            }
             request.v = v;
             request.base = &base;
             request.first = aisle_rng_below(&rng, AISLE_PACE_LEVELS);

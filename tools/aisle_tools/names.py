@@ -216,6 +216,15 @@ COUNTERS = dict(
             "open nodes max",
             "narrow-phase tests",
             "support calls max",
+            "cache hits",
+            "cache misses",
+            "cache kept",
+            "cache dropped",
+            "cache spoiled",
+            "layout work",
+            "ways round",
+            "wait ms",
+            "way round ms",
         ]
     )
 )
