@@ -12,6 +12,7 @@
 #define GOALS_US 500000   // after the set-up
 #define CONTROL_TICKS 2   // between two commands
 #define TRUTH_TICKS 20    // between two rows
+#define NOTICE_S 1.5      // until a mover that appears is minded: the longest lease, sensors, messages
 #define SETTLE_S 5.0      // after the last goal, for the planner to say so
 #define LIMIT_FACTOR 10.0 // of the way without movers
 #define LIMIT_EXTRA 60.0  // s
@@ -233,10 +234,14 @@ static void play_script(aisle_sim_episode *self) {
 
 static aisle_sim_prey prey_of(const aisle_sim_episode *self) {
     const aisle_sim_chassis *c = &self->chassis;
+    double v = fabs(c->v), late = NOTICE_S + self->vehicle.reaction_time;
     aisle_vec2 along;
     aisle_sincos(c->pose.theta, &along.y, &along.x);
-    return (aisle_sim_prey){
-        .at = {c->pose.x, c->pose.y}, .velocity = aisle_vec2_scale(along, c->v), .reach = self->vehicle.outer_radius};
+    return (aisle_sim_prey){.at = {c->pose.x, c->pose.y},
+                            .velocity = aisle_vec2_scale(along, c->v),
+                            .reach = self->vehicle.outer_radius,
+                            .stop_time = late + v / self->vehicle.d_max,
+                            .stop_way = v * late + 0.5 * v * v / self->vehicle.d_max};
 }
 
 static bool is_on(const aisle_sim_episode *self, aisle_sim_fault_kind kind) {

@@ -347,10 +347,16 @@ static void attack(aisle_sim_movers *self, aisle_sim_mover *m, double dt, const 
     go(m, m->hides ? towards(at_of(m), m->to, m->v_bound, dt) : hunt(self, m, distance, dt, prey), dt);
 }
 
-static void replay(aisle_sim_movers *self, aisle_sim_mover *m) {
-    aisle_vec2 at;
-    m->is_there = aisle_sim_tracks_at(self->tracks, m->track, self->now, &at, &m->velocity);
-    if (m->is_there) {
+static void replay(aisle_sim_movers *self, aisle_sim_mover *m, const aisle_sim_prey *prey) {
+    aisle_vec2 at, velocity;
+    bool recorded = aisle_sim_tracks_at(self->tracks, m->track, self->now, &at, &velocity);
+    if (recorded && !m->is_there) { // people do not come out of nothing, but recordings do
+        double near = m->reach + prey->reach + m->v_bound * prey->stop_time + prey->stop_way;
+        recorded = aisle_vec2_distance(at, prey->at) > near;
+    }
+    m->is_there = recorded;
+    if (recorded) {
+        m->velocity = velocity;
         m->pose = (aisle_pose2){at.x, at.y, 0.0};
     }
 }
@@ -378,7 +384,7 @@ void aisle_sim_movers_step(aisle_sim_movers *self, double dt, const aisle_sim_pr
         case AISLE_SIM_TRACK:
         case AISLE_SIM_KIND_COUNT:
         default:
-            replay(self, m);
+            replay(self, m, prey);
             break;
         }
     }

@@ -9,7 +9,8 @@
 //     adversarial  a ghost that heads for the vehicle at v_bound, through walls if they are in its way: for its place, for
 //                  the place ahead where both meet, to lie in wait and dash when it comes near, or to turn away and back.
 //                  A while after it has met the vehicle it goes to hide, beside its way as likely as not, and begins anew
-//     track        a recorded way (tracks.h)
+//     track        a recorded way (tracks.h). One that would appear so near that no vehicle could mind it any more stays
+//                  away until it is farther off: within its reach while the vehicle notices and stops
 //
 // No mover ever exceeds its v_bound, and none appears out of nothing, but tracks where their recording begins.
 // Rectangles keep their heading.
@@ -69,6 +70,7 @@ typedef struct aisle_sim_mover {
 typedef struct aisle_sim_prey { // what movers can see of the vehicle
     aisle_vec2 at, velocity;    // m, m/s
     double reach;               // m
+    double stop_time, stop_way; // s, m until it could stand if it had to
 } aisle_sim_prey;
 
 typedef struct aisle_sim_movers {

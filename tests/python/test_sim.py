@@ -99,13 +99,15 @@ def test_the_same_seed_gives_the_same_log_another_one_another(tmp_path, scenario
 def test_recorded_people_walk_where_they_are_put(tmp_path, data):
     out = tmp_path / "run"
     hall = str(data / "ros_maps" / "thor_hall_1.yaml")
-    words = ["sim", "--map", hall, "--start", "0,-8", "--goal", "0,8", "--out", str(out)]
+    words = ["sim", "--map", hall, "--start", "-4.125,-6.725", "--goal", "-8.625,-1.425", "--out", str(out)]
     words += ["--programs", str(SIM.parent), "--time", "20", "--tracks", str(data / "tracks" / "thor_exp1_run2.csv")]
     assert cli.main(words) in (0, 1)
     tracks = sim.read_truth(out / "truth.csv")
     people = [t for ident, t in tracks.items() if ident != 0]
     assert len(people) >= 3 and {t.kind for t in people} == {"track"}
     first = people[0].array
+    vehicle = tracks[0].array
+    assert np.hypot(*(vehicle[-1, 1:3] - vehicle[0, 1:3])) > 1.0
     assert np.hypot(*np.diff(first[:, 1:3], axis=0).T).max() <= 3.0 * 0.1 + 1e-6
 
 

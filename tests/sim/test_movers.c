@@ -155,6 +155,27 @@ static void test_each_tactic_leads_to_a_vehicle_that_passes(void) {
     }
 }
 
+static void test_recorded_ones_do_not_appear_beside_the_vehicle(void) {
+    static aisle_sim_sample sample[2] = {{1.0, {2.0, 3.0}}, {11.0, {12.0, 3.0}}}; // 1 m/s
+    static aisle_sim_track track = {.count = 2, .v_max = 1.0};
+    const aisle_sim_tracks tracks = {.sample = sample, .track = &track, .num_samples = 2, .num_tracks = 1};
+    aisle_sim_prey prey = {.at = {2.0, 2.0}, .reach = 0.5, .stop_time = 2.0, .stop_way = 0.25};
+    aisle_sim_movers_start(&movers, &scene, 1);
+    TEST_ASSERT_TRUE(aisle_sim_movers_add_tracks(&movers, &tracks));
+    const aisle_sim_mover *m = &movers.mover[0]; // told 1.6 m/s: within 0.25 + 0.5 + 3.2 + 0.25 m it stays away
+    double first = 0.0;
+    for (int step = 0; step < 3000; step++) {
+        aisle_sim_movers_step(&movers, dt, &prey);
+        if (m->is_there && first == 0.0) {
+            first = movers.now;
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.0 + sqrt(4.2 * 4.2 - 1.0), m->pose.x);
+        }
+        prey.at.x = m->is_there ? m->pose.x : prey.at.x; // once there it stays, however near
+        TEST_ASSERT_TRUE(first == 0.0 || m->is_there == (movers.now <= 11.0));
+    }
+    TEST_ASSERT_TRUE(first > 4.0);
+}
+
 static void test_a_seed_gives_the_same_walks(void) {
     static aisle_sim_movers first;
     for (int run = 0; run < 2; run++) {
@@ -198,6 +219,7 @@ int main(void) {
     RUN_TEST(test_random_jumps_stay_within_a_metre_each_way);
     RUN_TEST(test_adversaries_touch_a_vehicle_that_does_not_mind);
     RUN_TEST(test_each_tactic_leads_to_a_vehicle_that_passes);
+    RUN_TEST(test_recorded_ones_do_not_appear_beside_the_vehicle);
     RUN_TEST(test_a_seed_gives_the_same_walks);
     RUN_TEST(test_too_many_or_no_place_is_refused_and_nothing_is_added);
     RUN_TEST(test_names_lead_to_kinds_and_back);
