@@ -432,6 +432,9 @@ static aisle_status step_fresh(aisle_drive *self, uint32_t units, aisle_drive_ve
 
 // What is out may go on. Would a faster one do?
 static aisle_status kept(aisle_drive *self, aisle_drive_verdict *verdict) {
+    if (self->out.level == 0U) { // nothing slows it
+        self->why = (aisle_refusal){0, 0, 0.0F};
+    }
     if (self->out.level > 0U && self->cycle_us - self->changed_us >= AISLE_DRIVE_SPEED_UP_US) {
         begin_pace(self, 0);
         return AISLE_BUSY;
