@@ -99,7 +99,8 @@ def test_the_same_seed_gives_the_same_log_another_one_another(tmp_path, scenario
 def test_recorded_people_walk_where_they_are_put(tmp_path, data):
     out = tmp_path / "run"
     hall = str(data / "ros_maps" / "thor_hall_1.yaml")
-    words = ["sim", "--map", hall, "--start", "-4.125,-6.725", "--goal", "-8.625,-1.425", "--radius", "0.3", "--out", str(out)]
+    words = ["sim", "--map", hall, "--start", "-4.125,-6.725", "--goal", "-8.625,-1.425", "--radius", "0.3"]
+    words += ["--out", str(out)]
     words += ["--programs", str(SIM.parent), "--time", "20", "--tracks", str(data / "tracks" / "thor_exp1_run2.csv")]
     assert cli.main(words) in (0, 1)
     tracks = sim.read_truth(out / "truth.csv")
