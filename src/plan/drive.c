@@ -8,13 +8,12 @@
 #include <stddef.h>
 #include <string.h>
 
-#define RESTING 0.01    // m/s, rad/s: slower is at rest
+#define RESTING 0.01    // rad/s: a slower turn is rest
 #define BACK 0.3        // m, how far behind its last place the vehicle may be found
 #define AHEAD 0.5       // m, and ahead of where it could have got to
 #define AGE_MAX 0.3     // s, a pose is moved on by at most
 #define LEASE_LEAST 0.2 // s
-#define PACE_LEASE 0.35 // s, that new speeds are chosen to be safe for: so they stay so for a while
-#define START_LEASE 0.5 // s, the same of a vehicle at rest: no creeping up to what it waits for
+#define START_LEASE 0.5 // s, AISLE_DRIVE_PACE_LEASE of a vehicle at rest: no creeping up to what it waits for
 #define JOINT 1e-6      // m, two ways that meet are apart by at most
 #define APART 2e-3      // m, from a waypoint to where a path is left
 #define SNAP 2e-6       // m, shorter stretches are none
@@ -115,14 +114,17 @@ bool aisle_drive_moves(const aisle_drive *self) {
     return self->has_out && !self->is_resting;
 }
 
-// The waypoint of the first goal after the first one, as a place; the end of the path if there is none.
-static aisle_place next_goal(const aisle_drive_path *path) {
-    const uint32_t n = count_of(path);
-    uint32_t i = 1;
-    while (i + 1U < n && (path->msg->waypoints[i].flags & AISLE_WAYPOINT_GOAL) == 0) {
+uint32_t aisle_drive_next_goal(const aisle_waypoint_msg *w, uint32_t n) {
+    uint32_t i = n > 1U ? 1U : 0U;
+    while (i + 1U < n && (w[i].flags & AISLE_WAYPOINT_GOAL) == 0) {
         i++;
     }
-    return n > 1U ? (aisle_place){i, 1.0} : (aisle_place){0U, 0.0};
+    return i;
+}
+
+static aisle_place next_goal(const aisle_drive_path *path) {
+    const uint32_t i = aisle_drive_next_goal(path->msg->waypoints, count_of(path));
+    return (aisle_place){i, i > 0U ? 1.0 : 0.0};
 }
 
 // The place of `pose` on a path, no farther than the next goal.
@@ -139,7 +141,7 @@ void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const a
     const double ahead = AHEAD + since * vehicle->v_max;
     AISLE_ASSERT(self->stage == AISLE_DRIVE_IDLE);
     self->v = aisle_vec2_length(aisle_vec2_of((double)pose->vx, (double)pose->vy));
-    self->is_resting = self->v < RESTING && fabs((double)pose->omega) < RESTING;
+    self->is_resting = self->v < AISLE_PACE_RESTING && fabs((double)pose->omega) < RESTING;
     self->at_us = pose->utime;
     if (!self->has_plan) {
         return;
@@ -250,11 +252,26 @@ static bool join(aisle_path_msg *path, uint32_t head, const aisle_waypoint_msg *
     return true;
 }
 
-bool aisle_drive_splice(aisle_drive *self, const aisle_drive_world *world, aisle_place from,
-                        const aisle_waypoint_msg *tail, uint32_t n, const aisle_goal_msg *goals, uint32_t num_goals) {
+// Speeds and times of a way that begins where the vehicle is, as fast as the ground allows.
+static bool time_joined(aisle_drive *self, const aisle_drive_world *world, const aisle_goal_msg *goals,
+                        uint32_t num_goals) {
+    aisle_drive_path *joined = &self->next;
+    aisle_waypoint_msg *w = joined->msg->waypoints;
+    const uint32_t n = count_of(joined);
+    const bool rests = n == 1U || (w[0].flags & (AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE)) != 0;
+    const aisle_profile_start start = {.v = rests ? 0.0 : aisle_min(self->v, AISLE_VEHICLE_SPEED_MAX)};
+    aisle_profile_sum sum;
+    aisle_goal_dwells(w, n, goals, num_goals, joined->dwell);
+    joined->dwell[0] = 0.0F; // whatever is left of it is the mission's
+    const aisle_status st = aisle_profile_fill_moving(world->vehicle, world->layout, w, n, joined->dwell, &start, &sum);
+    return st == AISLE_OK || st == AISLE_PARTIAL;
+}
+
+bool aisle_drive_splice(aisle_drive *self, const aisle_drive_world *world, aisle_place from, const aisle_path_msg *tail,
+                        const aisle_goal_msg *goals, uint32_t num_goals) {
     const aisle_drive_path *plan = &self->plan;
     aisle_path_msg *joined = self->next.msg;
-    if (is_beyond(aisle_drive_rest(self, world->vehicle, AISLE_DRIVE_LATENCY), from)) {
+    if (is_beyond(aisle_drive_rest(self, world->vehicle, AISLE_PACE_LATENCY), from)) {
         return false;
     }
     const uint32_t cut = aisle_motion_cut(world->vehicle, plan->msg->waypoints, count_of(plan), plan->dwell, plan->at,
@@ -263,10 +280,15 @@ bool aisle_drive_splice(aisle_drive *self, const aisle_drive_world *world, aisle
         return false;
     }
     const uint32_t head = end_at(plan->msg->waypoints, count_of(plan), plan->at, from, joined->waypoints, cut);
-    if (!join(joined, head, tail, n)) {
+    if (!join(joined, head, tail->waypoints, (uint32_t)(uint16_t)tail->num_waypoints) ||
+        !time_joined(self, world, goals, num_goals)) {
         return false;
     }
-    self->plan.msg->length_bound = 0.0F; // it was one from elsewhere
+    self->plan.msg->goal_list_id = tail->goal_list_id;
+    self->plan.msg->goal_list_revision = tail->goal_list_revision;
+    self->plan.msg->planner = tail->planner;
+    self->plan.msg->cached = tail->cached;
+    self->plan.msg->work_units = tail->work_units;
     take_plan(self, joined->waypoints, (uint32_t)(uint16_t)joined->num_waypoints, goals, num_goals);
     return true;
 }
@@ -347,7 +369,7 @@ static void take_base(aisle_drive *self) {
     const uint32_t n = count_of(out);
     const aisle_waypoint_msg *w = out->msg->waypoints;
     const aisle_place rest =
-        aisle_motion_rest(vehicle, w, n, out->dwell, out->at, self->v, vehicle->reaction_time + AISLE_DRIVE_LATENCY);
+        aisle_motion_rest(vehicle, w, n, out->dwell, out->at, self->v, vehicle->reaction_time + AISLE_PACE_LATENCY);
     const double reach = aisle_motion_length_to(w, n, rest) - aisle_motion_length_to(w, n, out->at);
     const bool in_turn = n > 1U && (w[out->at.piece - 1U].flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
     self->base = (aisle_verify_base){.w = w,
@@ -377,10 +399,11 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
                                         .base = moves ? &self->base : NULL,
                                         .now_us = self->cycle_us,
                                         .late = self->world.vehicle->reaction_time,
-                                        .lease = moves ? PACE_LEASE : START_LEASE,
+                                        .lease = moves ? AISLE_DRIVE_PACE_LEASE : START_LEASE,
                                         .first = level,
                                         .current = present_level(self)};
     self->level = level;
+    memcpy(self->next.msg, self->head, offsetof(aisle_path_msg, waypoints));
     aisle_pace_start(&self->pace, &request, self->next.msg);
     self->stage = AISLE_DRIVE_PACE;
 }
@@ -392,7 +415,7 @@ static aisle_status step_check(aisle_drive *self, aisle_drive_verdict *verdict) 
     if (self->stops) {
         self->brakes = true;
         begin_pace(self, AISLE_PACE_STOP);
-    } else if (self->is_fresh) {
+    } else if (self->is_fresh && self->next.msg->path_revision == self->head->path_revision) {
         begin_moving(self, &self->next, AISLE_DRIVE_FRESH);
     } else if (self->must_change || !self->has_out || aisle_drive_is_stopping(self)) {
         begin_pace(self, 0);
@@ -408,9 +431,9 @@ static aisle_status prove_moving(aisle_drive *self, aisle_drive_path *path, uint
     if (st != AISLE_ERR_DATA) {
         return st;
     }
-    self->why = (aisle_refusal){AISLE_STATUS_YIELDING, self->moving.blocker, 0.0F};
     self->lease *= 0.5;
     if (self->lease < LEASE_LEAST) {
+        self->why = (aisle_refusal){AISLE_STATUS_YIELDING, self->moving.blocker, 0.0F};
         return AISLE_ERR_DATA;
     }
     begin_moving(self, path, self->stage);
@@ -434,8 +457,7 @@ static aisle_status step_fresh(aisle_drive *self, uint32_t units, aisle_drive_ve
 static aisle_status kept(aisle_drive *self, aisle_drive_verdict *verdict) {
     if (self->out.level == 0U) { // nothing slows it
         self->why = (aisle_refusal){0, 0, 0.0F};
-    }
-    if (self->out.level > 0U && self->cycle_us - self->changed_us >= AISLE_DRIVE_SPEED_UP_US) {
+    } else if (self->cycle_us - self->changed_us >= AISLE_DRIVE_SPEED_UP_US) {
         begin_pace(self, 0);
         return AISLE_BUSY;
     }
@@ -443,10 +465,8 @@ static aisle_status kept(aisle_drive *self, aisle_drive_verdict *verdict) {
 }
 
 static aisle_status step_check_moving(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
-    const aisle_refusal before = self->why;
     const aisle_status st = prove_moving(self, &self->out, units);
     if (st == AISLE_OK) {
-        self->why = before;
         return kept(self, verdict);
     }
     if (st == AISLE_ERR_DATA) {
@@ -466,20 +486,6 @@ static void fill_next(aisle_drive *self) {
     aisle_drive_path *next = &self->next;
     const aisle_path_msg *plan = self->plan.msg;
     aisle_path_msg *msg = next->msg;
-    const aisle_path_msg *head = self->head;
-    msg->utime = head->utime;
-    msg->boot_id = head->boot_id;
-    msg->path_revision = head->path_revision;
-    msg->query_id = 0;
-    msg->goal_list_id = head->goal_list_id;
-    msg->goal_list_revision = head->goal_list_revision;
-    msg->map_id = head->map_id;
-    msg->map_revision = head->map_revision;
-    msg->vehicle_revision = head->vehicle_revision;
-    msg->pose_utime = head->pose_utime;
-    msg->obstacles_utime = head->obstacles_utime;
-    msg->t0_utime = head->t0_utime;
-    msg->valid_until_utime = head->valid_until_utime;
     msg->status = (int8_t)(self->brakes                     ? AISLE_PATH_STOP
                            : next->level == AISLE_PACE_STOP ? AISLE_PATH_PARTIAL
                                                             : AISLE_PATH_OK);
@@ -495,8 +501,7 @@ static void fill_next(aisle_drive *self) {
     } else {
         msg->length_bound = 0.0F; // it was one from elsewhere
     }
-    msg->clearance_moving_min = 0.0F;
-    msg->planning_time = 0.0F;
+    msg->clearance_moving_min = msg->planning_time = 0.0F; // not told
     next->at = first_place(count_of(next));
     next->passed = self->passed;
     put_dwell(self, next);

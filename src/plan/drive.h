@@ -6,7 +6,8 @@
 // proofs, of the bytes on the layout (verify.h) and of its lease among moving obstacles (verify_moving.h).
 //
 // A cycle, for each new pose or obstacle snapshot, asks in this order:
-//     FRESH   a plan that begins where the vehicle stands, as it was proved: may it be leased?
+//     FRESH   a plan that begins where the vehicle stands, as it was proved: may it be leased? (Not if another revision was
+//             sent since it was begun: then its bytes are made anew.)
 //     CHECK   may what is out go on, for 1, 1/2, 1/4 of AISLE_LEASE_US? If it was slowed: would a faster one do?
 //     PACE    the plan from here on at the fastest level that is safe (pace.h), the last one a stop
 //     MOVING, STATIC  its proofs. A level that fails gives way to the next slower one; braking needs the static one alone
@@ -31,9 +32,9 @@
 #include "world/movers.h"
 
 #define AISLE_DRIVE_SPEED_UP_US 300000
+#define AISLE_DRIVE_PACE_LEASE 0.35 // s, that new speeds are chosen to be safe for: so they stay so for a while
 #define AISLE_DRIVE_OFF 0.05        // m
 #define AISLE_DRIVE_OFF_HEADING 0.2 // rad
-#define AISLE_DRIVE_LATENCY 0.1     // s, from a decision to the vehicle's doing
 
 typedef struct aisle_drive_world { // what a cycle goes by; stays put until it ends
     const aisle_layout *layout;
@@ -110,11 +111,11 @@ void aisle_drive_carve(aisle_drive *self, aisle_arena *arena);
 // request, copied. O(waypoints).
 void aisle_drive_adopt(aisle_drive *self, const aisle_proof *proof, const aisle_goal_msg *goals, uint32_t num_goals);
 
-// The plan goes on from `from` (a place on it ahead of the vehicle) by tail[n], which begins there, for these goals. The
-// present plan is kept up to there. False, nothing changed: the vehicle can no longer stop before `from`, the tail does not
-// begin there, or there are too many waypoints. O(waypoints).
-bool aisle_drive_splice(aisle_drive *self, const aisle_drive_world *world, aisle_place from,
-                        const aisle_waypoint_msg *tail, uint32_t n, const aisle_goal_msg *goals, uint32_t num_goals);
+// The plan goes on from `from` (a place on it ahead of the vehicle) by the tail, which begins there, for these goals. The
+// present plan is kept up to there. False, the plan is unchanged: the vehicle can no longer stop before `from`, the tail does
+// not begin there, or there are too many waypoints. O(waypoints).
+bool aisle_drive_splice(aisle_drive *self, const aisle_drive_world *world, aisle_place from, const aisle_path_msg *tail,
+                        const aisle_goal_msg *goals, uint32_t num_goals);
 
 // Forgets the plan and what is out, and ends a cycle.
 void aisle_drive_drop(aisle_drive *self);
@@ -125,10 +126,13 @@ void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const a
 // The first goal not passed is counted as reached. Not during a cycle.
 void aisle_drive_pass_goal(aisle_drive *self);
 
+// Index of the first goal of w[n] after the first waypoint; the last one if there is none. O(n).
+uint32_t aisle_drive_next_goal(const aisle_waypoint_msg *w, uint32_t n);
+
 // Where it rests if it goes on for reaction time and `delay` s and then brakes, on the plan; in a turn its end.
 aisle_place aisle_drive_rest(const aisle_drive *self, const aisle_vehicle *vehicle, double delay);
 
-// Is the vehicle in motion, or will be by what is out?
+// Is the vehicle in motion, by the last pose, while something is out?
 bool aisle_drive_moves(const aisle_drive *self);
 
 // Is what is out a path that only brakes?

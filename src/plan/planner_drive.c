@@ -9,11 +9,9 @@
 #define TRIES_MAX 4U                // at leaving the path under way, before the vehicle is stopped for it
 #define PATIENCE_US 4000000         // of a vehicle that hardly gets on, before it looks for a way round
 #define PATIENCE_STANDING_US 500000 // the same of what stands
-#define STANDING 0.2                // m/s; a slower mover stands
 #define NO_END 240.0                // s, counted for a wait without an end in sight
 #define LOOK_ROUND_US 500000        // between two looks whether going round is worth it
 #define DELAY_WORTH 5.0             // s, of waiting, before going round is looked for
-#define WEIGHED_LEASE 0.35          // s, as drive.c chooses speeds by
 #define GAIN_WORTH 5.0              // s, that going round must save
 
 // ---- where plans begin
@@ -26,14 +24,13 @@ void aisle_planner_leave_from(aisle_planner *self, aisle_request *request) {
         return;
     }
     const aisle_drive_path *plan = &drive->plan;
-    leaving->from = aisle_drive_rest(drive, &self->vehicle, AISLE_DRIVE_LATENCY + leaving->delay);
+    leaving->from = aisle_drive_rest(drive, &self->vehicle, AISLE_PACE_LATENCY + leaving->delay);
     leaving->serial = drive->plan_serial;
     const aisle_pose2 pose =
         aisle_motion_pose(plan->msg->waypoints, (uint32_t)(uint16_t)plan->msg->num_waypoints, leaving->from);
     request->start = (aisle_goal_msg){.x = pose.x, .y = pose.y, .theta = pose.theta};
 }
 
-// Planned once more, from farther ahead; at last from where the vehicle stands.
 void aisle_planner_go_round(aisle_planner *self) {
     const aisle_drive_path *plan = &self->drive.plan;
     const aisle_leaving *leaving = &self->leaving;
@@ -47,6 +44,7 @@ void aisle_planner_go_round(aisle_planner *self) {
     aisle_route_go_round(self->route, &self->movers, self->now_us + (int64_t)(time * 1e6), leaving->under_way);
 }
 
+// Planned once more, from farther ahead; at last from where the vehicle stands.
 static void try_again(aisle_planner *self) {
     aisle_leaving *leaving = &self->leaving;
     if (leaving->goes_round) { // it will be weighed again
@@ -73,8 +71,8 @@ static bool take_under_way(aisle_planner *self, const aisle_request *request, co
     aisle_path_msg *path = self->route->decoded; // the verifier's, which is done
     aisle_status st = aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, path, NULL);
     AISLE_ASSERT(st == AISLE_OK);
-    return aisle_drive_splice(drive, &world, leaving->from, path->waypoints, (uint32_t)(uint16_t)path->num_waypoints,
-                              request->goals, (uint32_t)(uint16_t)request->num_goals);
+    return aisle_drive_splice(drive, &world, leaving->from, path, request->goals,
+                              (uint32_t)(uint16_t)request->num_goals);
 }
 
 // Goals of it that were reached meanwhile are behind.
@@ -177,6 +175,8 @@ static void begin_cycle(aisle_planner *self) {
     aisle_path_msg *head = self->head;
     head->path_revision = self->path_revision + 1;
     head->pose_utime = self->pose.utime;
+    head->goal_list_id = self->drive.plan.msg->goal_list_id; // another list may be waiting for its plan
+    head->goal_list_revision = self->drive.plan.msg->goal_list_revision;
     head->valid_until_utime = self->now_us + AISLE_LEASE_US;
     aisle_drive_begin(&self->drive, &world, self->now_us, head, stops ? &why : NULL);
 }
@@ -198,14 +198,6 @@ static void after_stop(aisle_planner *self) {
 
 // ---- wait, or go round?
 
-static uint32_t next_goal_of(const aisle_waypoint_msg *w, uint32_t n) {
-    uint32_t i = n > 1U ? 1U : 0U;
-    while (i + 1U < n && (w[i].flags & AISLE_WAYPOINT_GOAL) == 0) {
-        i++;
-    }
-    return i;
-}
-
 static void begin_weighing(aisle_planner *self, aisle_weighing what, const aisle_waypoint_msg *w, uint32_t n,
                            const float *dwell, aisle_place at) {
     const aisle_pace_predict_request request = {.layout = self->layout,
@@ -216,10 +208,10 @@ static void begin_weighing(aisle_planner *self, aisle_weighing what, const aisle
                                                 .dwell = dwell,
                                                 .at = at,
                                                 .v = what == AISLE_WEIGHING_WAIT ? self->drive.v : 0.0,
-                                                .until = next_goal_of(w, n),
+                                                .until = aisle_drive_next_goal(w, n),
                                                 .now_us = self->now_us,
                                                 .late = self->vehicle.reaction_time,
-                                                .lease = WEIGHED_LEASE};
+                                                .lease = AISLE_DRIVE_PACE_LEASE};
     aisle_pace_predict_start(&self->predict, &request);
     self->weighing = what;
 }
@@ -228,7 +220,7 @@ static void begin_weighing(aisle_planner *self, aisle_weighing what, const aisle
 static bool stands(const aisle_planner *self, int32_t id) {
     for (uint32_t i = 0; i < self->movers.count; i++) {
         const aisle_mover *mover = &self->movers.mover[i];
-        if (mover->id == id && aisle_vec2_length(mover->velocity) < STANDING) {
+        if (mover->id == id && aisle_vec2_length(mover->velocity) < AISLE_LOCAL_STANDING) {
             return true;
         }
     }
@@ -258,15 +250,14 @@ static double free_time(const aisle_planner *self) {
     const aisle_drive_path *plan = &self->drive.plan;
     const uint32_t n = (uint32_t)(uint16_t)plan->msg->num_waypoints;
     const aisle_waypoint_msg *w = plan->msg->waypoints;
-    return (double)w[next_goal_of(w, n)].t - aisle_motion_time(&self->vehicle, w, n, plan->dwell, plan->at);
+    return (double)w[aisle_drive_next_goal(w, n)].t - aisle_motion_time(&self->vehicle, w, n, plan->dwell, plan->at);
 }
 
 // The way round is worth it if the vehicle is there sooner, what it still drives of the old way counted.
 static void take_round(aisle_planner *self, double seconds) {
     const aisle_route *route = self->route;
-    self->round_s = seconds;
     self->counters[AISLE_COUNTER_WAIT_MS] = (int64_t)(self->wait_s * 1e3);
-    self->counters[AISLE_COUNTER_ROUND_MS] = (int64_t)(self->round_s * 1e3);
+    self->counters[AISLE_COUNTER_ROUND_MS] = (int64_t)(seconds * 1e3);
     if (seconds + GAIN_WORTH < self->wait_s && !aisle_mission_is_stale(&self->mission, &route->request)) {
         self->counters[AISLE_COUNTER_ROUNDS]++;
         take_plan(self, &route->request, aisle_route_answer(route));

@@ -58,7 +58,7 @@ struct aisle_planner {
     aisle_refusal failed; // the mission cannot be planned, and the vehicle is still to be stopped; cause 0: it can
     aisle_weighing weighing;    // how long is what? Movers do not change meanwhile
     aisle_pace_predict predict; // it
-    double wait_s, round_s;     // to the next goal: by the plan, and by a way round, as weighed last
+    double wait_s;              // to the next goal by the plan, as weighed last
     int64_t looked_us;          // when that was begun
     int64_t swift_us;           // when the vehicle was last faster than its creep speed, or was sent off
     int32_t command_id;

@@ -5,8 +5,6 @@
 
 #include "door.h"
 
-#include <stdlib.h>
-
 #define TICK_US 50000
 
 static aisle_pose_msg here;
@@ -103,12 +101,6 @@ static bool has_arrived(double x, double y) {
 static int drive_to(double x, double y, int ticks) {
     for (int i = 0; i < ticks; i++) {
         tick();
-        if (getenv("TRACE") != NULL) {
-            const aisle_status_msg s = status_now();
-            printf("%d: %.2f %.2f %.2f v %.2f rev %d status %d n %d cause %d state %d/%d lease %.2f\n", i, here.x,
-                   here.y, here.theta, (double)here.vx, agv.revision, agv.path.status, agv.path.num_waypoints,
-                   agv.path.cause, s.state, s.cause, 1e-6 * (double)(agv.path.valid_until_utime - door_now));
-        }
         if (has_arrived(x, y)) {
             return i;
         }
@@ -185,6 +177,7 @@ static void test_a_person_who_stays_is_driven_round_where_there_is_room(void) {
     TEST_ASSERT_TRUE(aside > 1.5 && near > 1.0);
     const int64_t *counters = aisle_planner_counters(door);
     TEST_ASSERT_TRUE(counters[AISLE_COUNTER_ROUNDS] >= 1);
+    TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_PSO_LOCAL, agv.path.planner);
     TEST_ASSERT_TRUE(counters[AISLE_COUNTER_ROUND_MS] > 0 &&
                      counters[AISLE_COUNTER_WAIT_MS] > 0); // both costs are told
 }
@@ -369,7 +362,38 @@ static void test_another_goal_under_way_bends_the_path_behind_the_base(void) {
     for (int16_t i = 0; i < agv.path.num_base; i++) { // straight on as before
         TEST_ASSERT_DOUBLE_WITHIN(1e-5, 5.0, agv.path.waypoints[i].y);
     }
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, agv.path.length, status_now().distance_remaining); // of the joined way
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, agv.path.duration, status_now().time_remaining);
     TEST_ASSERT_TRUE(drive_to(16.0, 8.0, 600) > 0);
+}
+
+static void test_revisions_rise_whatever_happens_while_a_plan_is_made(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    aisle_goal_list_msg goals = door_goals(2, 16.0, 8.0);
+    goals.options.planner = AISLE_OPTIONS_AUTO;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+    for (int i = 0; i < 3; i++) { // it is under way
+        TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_planner_step(door, door_now, 1));
+    }
+    int32_t revision = door_path.path_revision;
+    for (int there = 1; there >= 0; there--) { // a person comes in front of it, and is gone
+        see(7, 2.95, 5.0, 0.0, 0.0);
+        seen.num_obstacles = (int16_t)there;
+        seen.utime = ++door_now;
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_OBSTACLES, &seen));
+        for (int i = 0; i < 50 && door_path.path_revision == revision; i++) {
+            (void)aisle_planner_step(door, door_now, 1);
+            door_pull_events();
+        }
+        TEST_ASSERT_EQUAL_INT32(revision + 1, door_path.path_revision);
+        revision++;
+    }
+    TEST_ASSERT_EQUAL_INT32(1, door_path.goal_list_revision); // the other plan is not there yet
+    door_settle();
+    TEST_ASSERT_EQUAL_INT32(2, door_path.goal_list_revision);
+    TEST_ASSERT_TRUE(door_path.path_revision > revision);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 8.0, door_path.waypoints[door_path.num_waypoints - 1].y);
 }
 
 static void test_a_wall_across_the_way_ahead_is_driven_round(void) {
@@ -423,6 +447,7 @@ int main(void) {
     RUN_TEST(test_a_pose_off_the_path_brakes_and_plans_anew_from_rest);
     RUN_TEST(test_a_source_that_falls_silent_brakes_the_vehicle);
     RUN_TEST(test_another_goal_under_way_bends_the_path_behind_the_base);
+    RUN_TEST(test_revisions_rise_whatever_happens_while_a_plan_is_made);
     RUN_TEST(test_a_wall_across_the_way_ahead_is_driven_round);
     RUN_TEST(test_a_goal_that_cannot_be_reached_any_more_stops_the_vehicle_and_says_why);
     RUN_TEST(test_several_goals_are_reached_in_one_drive);
