@@ -550,7 +550,7 @@ static aisle_status step_pace(aisle_drive *self, uint32_t units, aisle_drive_ver
     if (st == AISLE_BUSY) {
         return AISLE_BUSY;
     }
-    if (st == AISLE_ERR_CAPACITY) {
+    if (st != AISLE_OK && st != AISLE_PARTIAL) {
         self->is_unfit = true;
         return give_up(self, verdict);
     }

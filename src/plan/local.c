@@ -79,6 +79,7 @@ static void begin_round(aisle_local *self) {
         return;
     }
     aisle_togo_start(&self->togo, space->grid, space->reach, r->from, r->goal);
+    aisle_togo_end_at_start(&self->togo); // each position is nearer to the goal than the one before
     if (self->sure) {
         aisle_togo_insist(&self->togo, space->reach);
     }

@@ -395,7 +395,8 @@ void aisle_pace_start(aisle_pace *self, const aisle_pace_request *request, aisle
     }
     aisle_motion_cut_dwell(request->dwell, request->n, request->at, self->n, self->dwell);
     const aisle_waypoint_msg *first = &path->waypoints[0];
-    const bool rests = self->n == 1 || (first->flags & AISLE_WAYPOINT_STOP) != 0 || self->dwell[0] > 0.0F;
+    const bool rests = self->n == 1 || (first->flags & (AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE)) != 0 ||
+                       self->dwell[0] > 0.0F;
     self->v = rests || request->v < AISLE_PACE_RESTING ? 0.0 : aisle_min(request->v, AISLE_VEHICLE_SPEED_MAX);
     if (request->base != NULL) {
         knots whole = whole_path(self);

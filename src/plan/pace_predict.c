@@ -38,7 +38,8 @@ static void take_way(aisle_pace_predict *self) {
     }
     aisle_motion_cut_dwell(request->dwell, request->n, request->at, self->n, self->dwell);
     self->until = self->n - (request->n - request->until); // the last ones are the same
-    const bool rests = self->n == 1 || (self->w[0].flags & AISLE_WAYPOINT_STOP) != 0 || self->dwell[0] > 0.0F;
+    const bool rests = self->n == 1 || (self->w[0].flags & (AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_TURN_IN_PLACE)) != 0 ||
+                       self->dwell[0] > 0.0F;
     self->v = rests || request->v < AISLE_PACE_RESTING ? 0.0 : aisle_min(request->v, AISLE_VEHICLE_SPEED_MAX);
     const aisle_profile_start start = {self->v, NULL};
     aisle_profile_sum sum;

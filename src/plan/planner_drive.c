@@ -11,6 +11,7 @@
 #define PATIENCE_STANDING_US 500000 // the same of what stands
 #define NO_END 240.0                // s, counted for a wait without an end in sight
 #define LOOK_ROUND_US 500000        // between two looks whether going round is worth it
+#define LOOK_ROUND_MAX_US 8000000   // after looks that were in vain, each twice as long as the one before
 #define DELAY_WORTH 5.0             // s, of waiting, before going round is looked for
 #define GAIN_WORTH 5.0              // s, that going round must save
 
@@ -42,6 +43,16 @@ void aisle_planner_go_round(aisle_planner *self) {
     }
     const double time = way / aisle_max(self->drive.v, self->vehicle.creep_speed);
     aisle_route_go_round(self->route, &self->movers, self->now_us + (int64_t)(time * 1e6), leaving->under_way);
+}
+
+static int64_t look_after(int64_t pause_us) {
+    return pause_us < LOOK_ROUND_US ? LOOK_ROUND_US : pause_us > LOOK_ROUND_MAX_US ? LOOK_ROUND_MAX_US : pause_us;
+}
+
+// There is no way round, or none that is worth it.
+static void stay_on(aisle_planner *self) {
+    self->leaving.round = self->leaving.goes_round = false;
+    self->look_us = look_after(2 * self->look_us);
 }
 
 // Planned once more, from farther ahead; at last from where the vehicle stands.
@@ -104,7 +115,7 @@ static void take_plan(aisle_planner *self, const aisle_request *request, const a
 void aisle_planner_take_failure(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
                                 const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units) {
     if (self->leaving.goes_round) { // it waits on
-        self->leaving.round = self->leaving.goes_round = false;
+        stay_on(self);
         return;
     }
     if (aisle_drive_moves(&self->drive)) {
@@ -233,10 +244,11 @@ static void weigh_waiting(aisle_planner *self) {
     const bool yields = drive->why.cause == AISLE_STATUS_YIELDING;
     if (!yields || (drive->v > 0.5 * self->vehicle.creep_speed && !stands(self, drive->why.id))) {
         self->swift_us = self->now_us;
+        self->look_us = LOOK_ROUND_US;
     }
     const int64_t patience = stands(self, drive->why.id) ? PATIENCE_STANDING_US : PATIENCE_US;
     if (!yields || self->now_us - self->swift_us < patience || aisle_planner_is_busy(self) ||
-        self->now_us - self->looked_us < LOOK_ROUND_US) {
+        self->now_us - self->looked_us < look_after(self->look_us)) {
         return;
     }
     const aisle_drive_path *plan = &drive->plan;
@@ -261,8 +273,10 @@ static void take_round(aisle_planner *self, double seconds) {
     if (seconds + GAIN_WORTH < self->wait_s && !aisle_mission_is_stale(&self->mission, &route->request)) {
         self->counters[AISLE_COUNTER_ROUNDS]++;
         take_plan(self, &route->request, aisle_route_answer(route));
+        self->leaving.round = self->leaving.goes_round = false;
+    } else {
+        stay_on(self);
     }
-    self->leaving.round = self->leaving.goes_round = false;
 }
 
 void aisle_planner_step_weighing(aisle_planner *self, uint32_t units) {
@@ -278,7 +292,9 @@ void aisle_planner_step_weighing(aisle_planner *self, uint32_t units) {
     if (what == AISLE_WEIGHING_ROUND) {
         take_round(self, seconds);
     } else if (self->drive.has_plan && self->mission.wanted) {
-        self->wait_s = seconds;
+        // Whoever has hindered it for so long will hardly be gone sooner, wherever it seems to go.
+        const double waited = (double)(self->now_us - self->swift_us) * 1e-6;
+        self->wait_s = aisle_max(seconds, free_time(self) + waited);
         self->leaving.round = self->wait_s - free_time(self) > DELAY_WORTH;
         self->mission.replan = self->mission.replan || self->leaving.round;
     }

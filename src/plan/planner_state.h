@@ -60,6 +60,7 @@ struct aisle_planner {
     aisle_pace_predict predict; // it
     double wait_s;              // to the next goal by the plan, as weighed last
     int64_t looked_us;          // when that was begun
+    int64_t look_us;            // how long until it may be again
     int64_t swift_us;           // when the vehicle was last faster than its creep speed, or was sent off
     int32_t command_id;
     aisle_request *queue; // [limits.requests] ring

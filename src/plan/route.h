@@ -212,7 +212,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
                        const aisle_request *request, const aisle_path_msg *head);
 
 // After start(): the way is to be the local swarm's, round the movers. from_us: when the vehicle is at the start; in_motion: it
-// does not stop there, so that its way begins straight ahead.
+// does not stop there, so that its way begins straight ahead. It has 60,000 work units at most, some 10 ms here.
 void aisle_route_go_round(aisle_route *self, const aisle_movers *movers, int64_t from_us, bool in_motion);
 
 // Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: there is an answer already, and what may better it takes long (told

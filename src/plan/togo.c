@@ -8,7 +8,7 @@
 #define STRAIGHT 5U
 #define DIAGONAL 7U
 #define CELLS_A_UNIT 32U
-#define WORTH_SHARE 1.5 // of the start's cost, how far the search goes on
+#define WORTH_SHARE 1.5 // of the start's cost, how far the search goes on where more than the way there is wanted
 #define WORTH_MORE 10.0 // m, and beyond
 
 static const int DX[8] = {1, 0, -1, 0, 1, -1, -1, 1}, DY[8] = {0, 1, 0, -1, 1, 1, -1, -1}; // straight ones first
@@ -55,12 +55,19 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of,
     double least = aisle_max(reach_of / grid->lattice.res - 1.4143, 0.5);
     self->open_from = (uint32_t)aisle_min(least * least, (double)AISLE_FIELD_SQ_MAX);
     self->insists = false;
+    self->share = WORTH_SHARE;
+    self->more = WORTH_MORE;
     memset(self->count, 0, sizeof self->count);
     self->at = self->cells = 0;
     self->limit = AISLE_TOGO_NONE - DIAGONAL;
     self->start = cell_of(self, start);
     self->goal = cell_of(self, goal);
     reach(self, self->goal, 0);
+}
+
+void aisle_togo_end_at_start(aisle_togo *self) {
+    self->share = 1.0;
+    self->more = 0.0;
 }
 
 // Room at both ends of a diagonal step for all of it (space.h), half a diagonal for the centre's place in its planning
@@ -104,9 +111,12 @@ void aisle_togo_close(aisle_togo *self, aisle_vec2 a, aisle_vec2 b, double radiu
     }
 }
 
+// Of its planning cells the middle one, on an even stride that behind the middle.
 static bool holds_centre(const aisle_togo *self, uint32_t ix, uint32_t iy) {
-    const uint32_t fine = aisle_lattice_cell(&self->grid->lattice, centre_of(self, ix, iy), NULL);
-    return self->grid->field[fine] >= self->open_from || iy * self->w + ix == self->start;
+    const aisle_lattice *lattice = &self->grid->lattice;
+    const uint32_t mx = ix * self->stride + self->stride / 2U, my = iy * self->stride + self->stride / 2U;
+    const uint32_t x = mx < lattice->w ? mx : lattice->w - 1U, y = my < lattice->h ? my : lattice->h - 1U;
+    return self->grid->field[(size_t)y * lattice->w + x] >= self->open_from || iy * self->w + ix == self->start;
 }
 
 static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
@@ -132,10 +142,20 @@ static void expand(aisle_togo *self, uint32_t cell) {
     for (int k = 0; k < 8; k++) {
         uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
         uint32_t cost = self->at + (k < 4 ? STRAIGHT : DIAGONAL);
-        if (nx < self->w && ny < self->h && cost < self->cost[ny * self->w + nx] && is_open(self, nx, ny)) {
+        if (nx >= self->w || ny >= self->h || cost >= self->cost[ny * self->w + nx]) {
+            continue;
+        }
+        if (is_open(self, nx, ny)) {
             reach(self, ny * self->w + nx, cost);
+        } else {
+            self->cost[ny * self->w + nx] = 0; // closed: not looked at again
         }
     }
+}
+
+static bool is_reached(const aisle_togo *self, uint32_t cell) {
+    const bool closed = self->cost[cell] == 0U && cell != self->goal;
+    return self->cost[cell] != AISLE_TOGO_NONE && !closed;
 }
 
 // The next bucket that holds something; false: none does, or the limit is reached.
@@ -158,7 +178,7 @@ aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) 
         if (self->cost[cell] == self->at) {
             expand(self, cell);
             if (cell == self->start && self->limit == AISLE_TOGO_NONE - DIAGONAL) {
-                double beyond = WORTH_SHARE * (double)self->at + STRAIGHT * WORTH_MORE / self->size;
+                double beyond = self->share * (double)self->at + STRAIGHT * self->more / self->size;
                 self->limit = (uint32_t)aisle_min(beyond, (double)self->limit);
             }
         }
@@ -168,14 +188,12 @@ aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) 
     if (more) {
         return AISLE_BUSY;
     }
-    return self->cost[self->start] == AISLE_TOGO_NONE ? AISLE_PARTIAL : AISLE_OK;
+    return is_reached(self, self->start) ? AISLE_OK : AISLE_PARTIAL;
 }
 
 double aisle_togo_at(const aisle_togo *self, aisle_vec2 p) {
     const uint32_t cell = cell_of(self, p);
-    const uint16_t cost = self->cost[cell];
-    const bool closed = cost == 0U && cell != self->goal;
-    return cost == AISLE_TOGO_NONE || closed ? (double)INFINITY : (double)cost * self->size / STRAIGHT;
+    return is_reached(self, cell) ? (double)self->cost[cell] * self->size / STRAIGHT : (double)INFINITY;
 }
 
 bool aisle_togo_next(const aisle_togo *self, aisle_vec2 p, aisle_vec2 *next) {
@@ -185,8 +203,7 @@ bool aisle_togo_next(const aisle_togo *self, aisle_vec2 p, aisle_vec2 *next) {
     for (uint32_t k = 0; k < 8U; k++) {
         const uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
         const uint32_t at = nx < self->w && ny < self->h ? ny * self->w + nx : cell;
-        const bool closed = self->cost[at] == 0U && at != self->goal;
-        if (!closed && self->cost[at] < least) {
+        if (is_reached(self, at) && self->cost[at] < least) {
             least = self->cost[at];
             *next = centre_of(self, nx, ny);
             found = true;

@@ -3,7 +3,7 @@
 // Cells of AISLE_TOGO_SIDE (whole planning cells, more where the map is large), open if any planning cell in it may
 // hold the disc (optimistic, so that no place the body can be in is closed), steps of 5 and 7 to the side and diagonally
 // (Borgefors 1986, the chamfer 5-7-11 without its last step): at most 8 % too long. Dijkstra's search with a ring of
-// buckets (Dial 1969), outwards from the goal until the start is reached and as far beyond as a way may be worth it.
+// buckets (Dial 1969), outwards from the goal until the start is reached and as far beyond as is asked for.
 // Places may be closed besides what the grid says (movers that stand in the way): cells whose centre is in them.
 // A guide for searches: neither a bound nor a proof.
 // Memory: 2 bytes a cell of its own, one for 16 planning cells, and 0.5 MiB. Time: O(cells reached), sliced.
@@ -28,6 +28,7 @@ typedef struct aisle_togo {
     bool insists;                    // see below
     uint32_t open_from;              // least field value of an open planning cell
     uint32_t at, limit, start, goal; // cost under way; where it ends; the cells of start and goal
+    double share, more;              // how far beyond the start's cost it goes on, as a part of it and m
     uint32_t cells;                  // looked at
 } aisle_togo;
 
@@ -38,6 +39,10 @@ void aisle_togo_carve(aisle_togo *self, aisle_arena *arena, uint32_t cells);
 
 // Begins; reach: m, radius of the disc and its margin.
 void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach, aisle_vec2 start, aisle_vec2 goal);
+
+// After start(): ends as soon as all is known that is no farther from the goal than the start; else it goes on to half as far
+// again and 10 m.
+void aisle_togo_end_at_start(aisle_togo *self);
 
 // After start(): only cells are open in whose centre the disc has room enough to go straight to the neighbours' centres,
 // surely, and the start's own. What such cells connect is connected; narrower ways are not seen.

@@ -429,6 +429,20 @@ static void test_a_turn_that_is_stopped_ends_within_the_turn(void) {
     prove(&out, NULL, 0.0);
 }
 
+static void test_one_that_has_not_quite_come_to_rest_where_a_turn_begins_goes_on(void) {
+    (void)add(0.0, 0.0, 0.0);
+    set_flag(add(2.0, 0.0, 0.0), AISLE_WAYPOINT_TURN_IN_PLACE);
+    (void)add(2.0, 0.0, 1.5);
+    (void)add(2.0, 3.0, 1.5);
+    fill_way();
+    for (uint32_t level = 0; level < AISLE_PACE_LEVELS; level++) {
+        aisle_pace_request request = request_at((aisle_place){1, 1.0}, 0.03); // m/s, of a vehicle that lags behind
+        request.first = level;
+        TEST_ASSERT_EQUAL_INT(level < AISLE_PACE_STOP ? AISLE_OK : AISLE_PARTIAL, run(&request, &out));
+        TEST_ASSERT_TRUE(out.num_waypoints >= 1 && out.waypoints[0].v <= 0.0F);
+    }
+}
+
 static void test_a_faster_level_than_the_present_one_must_hold_longer(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(60.0, 1.0);
@@ -542,6 +556,7 @@ int main(void) {
     RUN_TEST(test_a_capped_path_is_slow_as_far_as_the_lease_reaches_and_fast_behind);
     RUN_TEST(test_a_stop_ends_where_the_brakes_end_it);
     RUN_TEST(test_a_turn_that_is_stopped_ends_within_the_turn);
+    RUN_TEST(test_one_that_has_not_quite_come_to_rest_where_a_turn_begins_goes_on);
     RUN_TEST(test_a_faster_level_than_the_present_one_must_hold_longer);
     RUN_TEST(test_it_names_the_mover_that_slows_it_and_none_if_none_does);
     RUN_TEST(test_a_vehicle_at_rest_beside_a_mover_stays_and_one_that_waits_need_not_care);

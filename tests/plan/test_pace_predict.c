@@ -94,6 +94,17 @@ static void test_rest_on_the_way_is_no_standing_however_long(void) {
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, predict.waited);
 }
 
+static void test_one_not_quite_at_rest_where_a_turn_begins_is_taken_to_rest(void) {
+    (void)add(0.0, 0.0, 0.0);
+    set_flag(add(2.0, 0.0, 0.0), AISLE_WAYPOINT_TURN_IN_PLACE);
+    (void)add(2.0, 0.0, 1.5);
+    (void)add(2.0, 3.0, 1.5);
+    fill_way();
+    const aisle_pace_predict_request request = request_from((aisle_place){1, 1.0}, 0.03);
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request));
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, (double)path[3].t - (double)path[1].t, predict.seconds);
+}
+
 static void test_where_it_is_already_it_takes_no_time(void) {
     random_way(3, 12, false);
     aisle_pace_predict_request request = request_from((aisle_place){4, 1.0}, 0.0);
@@ -299,6 +310,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_unhindered_it_takes_as_long_as_the_path_says);
     RUN_TEST(test_rest_on_the_way_is_no_standing_however_long);
+    RUN_TEST(test_one_not_quite_at_rest_where_a_turn_begins_is_taken_to_rest);
     RUN_TEST(test_where_it_is_already_it_takes_no_time);
     RUN_TEST(test_it_agrees_with_a_fine_simulation_of_crossing_movers);
     RUN_TEST(test_a_standing_blocker_costs_what_it_takes_to_get_there_and_a_minute);

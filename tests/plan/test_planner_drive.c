@@ -160,6 +160,18 @@ static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
     TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 600) > 0);
 }
 
+static void test_a_way_round_that_is_none_is_looked_for_ever_more_rarely(void) {
+    setup_hall(20.0, 3.0);
+    open_hall(2.0, 1.5, 0.0);
+    see(7, 12.0, 1.5, 0.0, 0.0);
+    go(1, 18.0, 1.5);
+    TEST_ASSERT_EQUAL_INT(-1, drive_to(18.0, 1.5, 1200)); // a minute, about 50 s of it at rest
+    const int64_t *counters = aisle_planner_counters(door);
+    // Its plan, and looks after 0.5, 1, 2, 4, 8, 8 ... s of each stand; every half second it were a hundred.
+    TEST_ASSERT_TRUE(counters[AISLE_COUNTER_GOAL_LISTS] >= 6 && counters[AISLE_COUNTER_GOAL_LISTS] <= 20);
+    TEST_ASSERT_EQUAL_INT64(0, counters[AISLE_COUNTER_ROUNDS]);
+}
+
 static void test_a_person_who_stays_is_driven_round_where_there_is_room(void) {
     setup_hall(20.0, 12.0);
     open_hall(2.0, 6.0, 0.0);
@@ -437,6 +449,7 @@ int main(void) {
     RUN_TEST(test_a_vehicle_alone_follows_one_path_to_its_goal);
     RUN_TEST(test_a_person_far_away_changes_nothing);
     RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
+    RUN_TEST(test_a_way_round_that_is_none_is_looked_for_ever_more_rarely);
     RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
     RUN_TEST(test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one);
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);

@@ -49,6 +49,30 @@ static void test_it_is_the_way_within_a_tenth_and_two_cells(void) {
     TEST_ASSERT_TRUE(aisle_togo_at(&togo, start) > aisle_togo_at(&togo, aisle_vec2_of(5.0, 8.0)));
 }
 
+static void test_ending_at_the_start_it_knows_all_that_is_no_farther_and_little_more(void) {
+    static double all[120][200];
+    const aisle_vec2 start = {11.5, 8.0}, goal = {18.0, 3.0};
+    uint32_t whole, spent = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, search(0.5, start, goal, 1000, &whole));
+    const double far = aisle_togo_at(&togo, start);
+    for (int iy = 0; iy < 120; iy++) {
+        for (int ix = 0; ix < 200; ix++) {
+            all[iy][ix] = aisle_togo_at(&togo, aisle_vec2_of(0.1 * ix + 0.05, 0.1 * iy + 0.05));
+        }
+    }
+    aisle_togo_start(&togo, aisle_layout_grid(&hall_layout), 0.5, start, goal);
+    aisle_togo_end_at_start(&togo);
+    while (aisle_togo_step(&togo, 7, &spent) == AISLE_BUSY) {
+    }
+    for (int iy = 0; iy < 120; iy++) {
+        for (int ix = 0; ix < 200; ix++) {
+            const double told = aisle_togo_at(&togo, aisle_vec2_of(0.1 * ix + 0.05, 0.1 * iy + 0.05));
+            TEST_ASSERT_TRUE(all[iy][ix] > far + 1e-9 || !(fabs(told - all[iy][ix]) > 0.0));
+        }
+    }
+    TEST_ASSERT_TRUE(4U * spent < 3U * whole);
+}
+
 static void test_what_the_disc_cannot_reach_is_infinite(void) {
     uint32_t spent;
     hall_begin(20.0, 12.0);
@@ -162,6 +186,7 @@ static void test_insisting_a_passage_of_just_the_width_is_not_seen(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_it_is_the_way_within_a_tenth_and_two_cells);
+    RUN_TEST(test_ending_at_the_start_it_knows_all_that_is_no_farther_and_little_more);
     RUN_TEST(test_what_the_disc_cannot_reach_is_infinite);
     RUN_TEST(test_slices_change_nothing);
     RUN_TEST(test_a_map_of_more_cells_than_it_holds_is_seen_coarser);
