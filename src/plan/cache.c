@@ -187,13 +187,21 @@ static bool is_of(const aisle_cache_entry *entry, int32_t map_id, uint64_t conte
     return entry->map_id == map_id && entry->content == content;
 }
 
+// Is it of that layout; to be repaired: may it be on that layout?
+static bool serves(const aisle_cache_entry *entry, int32_t map_id, uint64_t content, bool to_repair) {
+    return to_repair ? entry->can_repair && entry->map_id == map_id && entry->repair_content == content
+                     : is_of(entry, map_id, content);
+}
+
 // The most recently used entry of the question in hand; its path is where *c stands.
-static uint32_t look_up(const aisle_cache *self, int32_t map_id, uint64_t content, cursor *c) {
+static uint32_t look_up(const aisle_cache *self, const aisle_layout *layout, bool to_repair, cursor *c) {
+    const int32_t map_id = aisle_layout_map_id(layout);
+    const uint64_t content = aisle_layout_content(layout);
     uint32_t found = AISLE_CACHE_NONE;
     for (uint32_t i = 0; i < self->capacity; i++) {
         const aisle_cache_entry *entry = &self->entries[i];
         if (!entry->in_use || entry->hash != self->hash || entry->key_size != self->key_size ||
-            !is_of(entry, map_id, content)) {
+            !serves(entry, map_id, content, to_repair)) {
             continue;
         }
         cursor here = cursor_at(self, entry->first);
@@ -206,15 +214,22 @@ static uint32_t look_up(const aisle_cache *self, int32_t map_id, uint64_t conten
     return found;
 }
 
-static uint32_t look_up_now(const aisle_cache *self, const aisle_layout *layout, cursor *c) {
-    return look_up(self, aisle_layout_map_id(layout), aisle_layout_content(layout), c);
+static aisle_cache_found found_in(const aisle_cache_entry *entry) {
+    return (aisle_cache_found){entry->path_size, entry->theta, entry->order, entry->worth, entry->basis};
+}
+
+// Are these the bytes that were put in?
+static bool is_as_put(const aisle_cache_entry *entry, const uint8_t *path) {
+    return digest_of_head(entry, path) == entry->head &&
+           aisle_crc32(0, path + AISLE_PATH_AT_WAYPOINTS, entry->path_size - AISLE_PATH_AT_WAYPOINTS) ==
+               entry->basis.waypoints;
 }
 
 uint32_t aisle_cache_find(aisle_cache *self, const aisle_cache_question *question, uint8_t *bytes,
                           aisle_cache_found *found) {
     cursor c;
     make_key(self, question);
-    const uint32_t at = look_up_now(self, question->layout, &c);
+    const uint32_t at = look_up(self, question->layout, false, &c);
     if (at == AISLE_CACHE_NONE) {
         self->misses++;
         return AISLE_CACHE_NONE;
@@ -228,7 +243,26 @@ uint32_t aisle_cache_find(aisle_cache *self, const aisle_cache_question *questio
     if (!question->readonly) {
         entry->used = ++self->tick;
     }
-    *found = (aisle_cache_found){entry->path_size, entry->theta, entry->order, entry->basis};
+    *found = found_in(entry);
+    return at;
+}
+
+uint32_t aisle_cache_find_repairable(aisle_cache *self, const aisle_cache_question *question, uint8_t *bytes,
+                                     aisle_cache_found *found) {
+    cursor c;
+    make_key(self, question);
+    const uint32_t at = look_up(self, question->layout, true, &c);
+    if (at == AISLE_CACHE_NONE) {
+        return AISLE_CACHE_NONE;
+    }
+    aisle_cache_entry *entry = &self->entries[at];
+    get_bytes(&c, bytes, entry->path_size);
+    if (!is_as_put(entry, bytes)) {
+        drop(self, entry);
+        self->spoiled++;
+        return AISLE_CACHE_NONE;
+    }
+    *found = found_in(entry);
     return at;
 }
 
@@ -318,7 +352,7 @@ void aisle_cache_put(aisle_cache *self, const aisle_cache_question *question, co
     const uint32_t blocks = (self->key_size + size + AISLE_CACHE_BLOCK - 1U) / AISLE_CACHE_BLOCK;
     AISLE_ASSERT(size >= AISLE_PATH_AT_WAYPOINTS && size <= AISLE_CACHE_PATH_MAX && blocks <= self->blocks.capacity);
     cursor c;
-    const uint32_t old = look_up_now(self, question->layout, &c);
+    const uint32_t old = look_up(self, question->layout, false, &c);
     if (old != AISLE_CACHE_NONE) {
         drop(self, &self->entries[old]);
     }
@@ -336,7 +370,8 @@ void aisle_cache_put(aisle_cache *self, const aisle_cache_question *question, co
                                  .theta = answer->path->waypoints[0].theta,
                                  .reach = aisle_max(vehicle->creep_clearance, vehicle->margin) + REACH_SPARE,
                                  .radius = vehicle->outer_radius,
-                                 .excess = excess_of(question, answer)};
+                                 .excess = excess_of(question, answer),
+                                 .worth = answer->worth};
     note_order(entry, question, answer);
     entry->head = digest_of_head(entry, answer->bytes);
     c = cursor_at(self, entry->first);
@@ -432,13 +467,11 @@ static bool is_way_opened(const aisle_cache *self, const aisle_cache_entry *entr
     return false;
 }
 
-// Looks at the piece that ends at change.at. True: the path cannot stay.
+// Looks at the piece that ends at change.at. True: the path can neither stay nor be repaired.
 static bool is_lost(aisle_cache *self, const aisle_cache_entry *entry) {
     aisle_cache_change *change = &self->change;
     const aisle_waypoint_msg *w = change->path->waypoints;
-    if (is_piece_touched(self, entry, change->at)) {
-        return true;
-    }
+    change->touched = change->touched || is_piece_touched(self, entry, change->at);
     if ((w[change->at].flags & AISLE_WAYPOINT_GOAL) == 0) {
         return false;
     }
@@ -457,9 +490,8 @@ static bool load(aisle_cache *self, const aisle_cache_entry *entry) {
     }
     get_bytes(&c, change->bytes, entry->path_size);
     change->at = change->leg_start = 0;
-    change->loaded = digest_of_head(entry, change->bytes) == entry->head &&
-                     aisle_crc32(0, change->bytes + AISLE_PATH_AT_WAYPOINTS,
-                                 entry->path_size - AISLE_PATH_AT_WAYPOINTS) == entry->basis.waypoints &&
+    change->touched = false;
+    change->loaded = is_as_put(entry, change->bytes) &&
                      aisle_msg_decode(AISLE_MSG_PATH, change->bytes, entry->path_size, change->path, NULL) == AISLE_OK;
     return change->loaded;
 }
@@ -471,12 +503,16 @@ static void next_entry(aisle_cache *self) {
 
 static void keep(aisle_cache *self, aisle_cache_entry *entry) {
     entry->content = self->change.content;
+    entry->can_repair = false;
     self->kept++;
     next_entry(self);
 }
 
-static void leave(aisle_cache *self) {
-    self->dropped++;
+// It stays with its layout. One that was in force counts.
+static void leave(aisle_cache *self, aisle_cache_entry *entry, bool can_repair) {
+    self->dropped += is_of(entry, self->map_id, self->content) ? 1 : 0;
+    entry->can_repair = can_repair;
+    entry->repair_content = self->change.content;
     next_entry(self);
 }
 
@@ -484,16 +520,21 @@ static void leave(aisle_cache *self) {
 static uint32_t step_entry(aisle_cache *self) {
     aisle_cache_change *change = &self->change;
     aisle_cache_entry *entry = &self->entries[change->entry];
-    if (!entry->in_use || !is_of(entry, self->map_id, self->content)) {
+    const bool is_now = is_of(entry, self->map_id, self->content);
+    if (!entry->in_use || !(is_now || serves(entry, self->map_id, self->content, true))) {
         next_entry(self);
         return 1;
     }
-    if (change->map_id == self->map_id && change->content == self->content) {
-        keep(self, entry); // the same said again
+    if (change->map_id == self->map_id && change->content == self->content) { // the same said again
+        if (is_now) {
+            keep(self, entry);
+        } else {
+            next_entry(self);
+        }
         return 1;
     }
     if (change->diff->everything) {
-        leave(self);
+        leave(self, entry, false);
         return 1;
     }
     if (!change->loaded) {
@@ -505,9 +546,13 @@ static uint32_t step_entry(aisle_cache *self) {
         return 1U + entry->path_size / LOOKS_A_UNIT;
     }
     if (is_lost(self, entry)) {
-        leave(self);
+        leave(self, entry, false);
     } else if (++change->at == (uint32_t)change->path->num_waypoints) {
-        keep(self, entry);
+        if (is_now && !change->touched) {
+            keep(self, entry);
+        } else {
+            leave(self, entry, true);
+        }
     }
     return 1U + change->diff->count;
 }

@@ -29,8 +29,19 @@
 // good, then, as when it was planned; a fresh search may still come out otherwise, better too, on ground that was free
 // all the time, where the planner is not exact.
 // What is not taken over (dropped) stays with the layout it is of, and serves when that comes back (a door that opens
-// and shuts), until it is the least recently used. Zones of every kind are treated alike. After a change of everything
-// nothing is taken over unless the new layout says the same.
+// and shuts), until it is the least recently used.
+//
+// Repairs. An entry that is lost by 1. alone can be repaired as long as 2. holds for all changes since, so that ground was
+// taken away and none given that could better it. Then its length_bound, less the 1 mm a leg that 2. leaves open, still is
+// one, and nothing is worth more than the path was. So an answer made of its free pieces (route_repair.c) is taken if
+//     SHORTEST      it is longer than that bound by at most AISLE_CACHE_REPAIR of it: surely no way is shorter by more
+//     others        it is worse by at most that part of what the path was worth when it was planned, whatever repairs came
+//                   between: the most that planning anew could win if the path was the best there was
+// 1 %, since SHORTEST answers are held to 1.01 times the optimum at worst. A longer detour may mean that another way round
+// is the best one by now, which the free pieces do not tell.
+//
+// Zones of every kind are treated alike. After a change of everything nothing is taken over or repaired unless the new
+// layout says the same.
 //
 // Memory: AISLE_CACHE_PATH_BYTES for each of cached_paths, which a longer path takes several of; at least one of any
 // size fits. Least recently used leaves first. Time: find and put O(entries + bytes); a change O(waypoints * changed
@@ -46,6 +57,7 @@
 #define AISLE_CACHE_PATH_BYTES 8192U // of key and path, on average
 #define AISLE_CACHE_BLOCK 508U       // bytes of them in one block
 #define AISLE_CACHE_NONE UINT32_MAX
+#define AISLE_CACHE_REPAIR 0.01 // part of its worth that a repaired answer may be worse by
 
 typedef struct aisle_cache_question {
     const aisle_goal_msg *start, *goals; // goals[num_goals] as they were asked
@@ -66,6 +78,9 @@ typedef struct aisle_cache_entry {
     bool in_use, any_order;
     int32_t map_id;
     uint64_t content;                    // of the layout it is of
+    bool can_repair;                     // it is lost on another one, but may be repaired there:
+    uint64_t repair_content;             // of that
+    double worth;                        // when it was planned: what repairs are held against
     uint64_t used;                       // when last, counted in finds and puts
     uint64_t hash;                       // of the key
     uint64_t head;                       // digest of the path's bytes before its waypoints; the basis tells of the rest
@@ -86,6 +101,7 @@ typedef struct aisle_cache_change { // of the layout, being taken in
     bool loaded;
     uint32_t entry, at; // in hand: its piece that ends at waypoint `at`
     uint32_t leg_start; // waypoint
+    bool touched;       // it is lost, unless repaired
     uint64_t content;   // the layout's now
     int32_t map_id;
 } aisle_cache_change;
@@ -100,7 +116,7 @@ typedef struct aisle_cache {
     uint64_t tick, content; // content: of the layout that was in force last
     int32_t map_id;
     aisle_cache_change change;
-    int64_t hits, misses, kept, dropped, spoiled; // spoiled: among the misses
+    int64_t hits, misses, kept, dropped, spoiled, repaired; // spoiled and repaired: among the misses
 } aisle_cache;
 
 void aisle_cache_carve(aisle_cache *self, aisle_arena *arena, const aisle_limits *limits);
@@ -111,6 +127,7 @@ typedef struct aisle_cache_found {
     size_t size;          // of the path
     double theta;         // rad, of its first waypoint
     const uint8_t *order; // [num_goals] in which it visits them: indices of the question's goals
+    double worth;         // when it was planned, as of an answer
     aisle_proof_basis basis;
 } aisle_cache_found;
 
@@ -118,6 +135,10 @@ typedef struct aisle_cache_found {
 // is none (a miss, counted).
 uint32_t aisle_cache_find(aisle_cache *self, const aisle_cache_question *question, uint8_t *bytes,
                           aisle_cache_found *found);
+// After a miss: the newest answer to the same question that may be repaired on its layout. It is of another one and not to
+// be sent. Returns the entry, AISLE_CACHE_NONE if there is none; a spoiled one is dropped.
+uint32_t aisle_cache_find_repairable(aisle_cache *self, const aisle_cache_question *question, uint8_t *bytes,
+                                     aisle_cache_found *found);
 // What find() gave was proved (a hit), on this basis from now on if not NULL; or it was not: it is dropped.
 void aisle_cache_confirm(aisle_cache *self, uint32_t entry, const aisle_proof_basis *basis);
 void aisle_cache_disprove(aisle_cache *self, uint32_t entry);
@@ -128,6 +149,7 @@ typedef struct aisle_cache_answer { // a proved path
     const aisle_path_msg *path;  // the same, decoded
     const aisle_goal_msg *goals; // the question's, in the order in which it visits them
     double value;                // what it is worth by the question's objective, as aisle_route_measure() has it
+    double worth;                // the same, or of a repaired one what it was before all repairs
     aisle_proof_basis basis;
 } aisle_cache_answer;
 

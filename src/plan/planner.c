@@ -189,6 +189,7 @@ static void count_cache(aisle_planner *self) {
     counters[AISLE_COUNTER_CACHE_KEPT] = cache->kept;
     counters[AISLE_COUNTER_CACHE_DROPPED] = cache->dropped;
     counters[AISLE_COUNTER_CACHE_SPOILED] = cache->spoiled;
+    counters[AISLE_COUNTER_CACHE_REPAIRED] = cache->repaired;
 }
 
 static void count_route(aisle_planner *self) {

@@ -113,6 +113,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     memcpy(self->asked, request->goals, sizeof self->asked);
     self->stage = AISLE_ROUTE_RECALL;
     self->recalled = AISLE_CACHE_NONE;
+    self->repair.is_done = false;
     self->is_cut = false;
     self->leg = 0;
     self->point_count = 0;
@@ -144,6 +145,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_recall(self);
     case AISLE_ROUTE_REPROVE:
         return aisle_route_step_reprove(self, units);
+    case AISLE_ROUTE_REPAIR:
+        return aisle_route_step_repair(self, units);
     case AISLE_ROUTE_CHECK:
         return aisle_route_check(self);
     case AISLE_ROUTE_ORDER:

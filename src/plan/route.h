@@ -2,6 +2,11 @@
 //
 // RECALL an answer to the same question (cache.h), give it this request's head and REPROVE it: the answer, flag `cached`
 // set. Spoiled or disproved it is forgotten and the request planned anew. Every answer to a query is remembered.
+// REPAIR, where none is but one that an obstacle stands on by now (cache.h): of each leg the free pieces before and behind
+// what is blocked are kept, between them the shortest way of the turning disc is searched, with the creep clearance to
+// spare where that is possible (but for SHORTEST); BUILD, VERIFY; taken if it is worth as much as cache.h says, else all is
+// planned anew. AUTO and ASTAR alone, paths without manoeuvres, no disc's SHORTEST ones (planned with less work); a quarter
+// of the budget at most.
 // CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move); ORDER the goals if they may come in
 // any (those behind the ones kept): by the lengths of the exact ways of the disc inside the footprint (tour.h), whatever the objective, with half of
 // the budget at most; what is the best by then is flagged by cause BUDGET beside the path. A goal that no way leads to
@@ -91,11 +96,12 @@ typedef struct aisle_proof { // an encoded path and what it is worth
 
 // A way to plan a request; an objective may try several and keep the best by its own measure (route_ways.c).
 typedef enum aisle_way_kind {
-    AISLE_WAY_SHORT, // exactly, by the tangent search, at the margin
-    AISLE_WAY_CLEAR, // the same at the creep clearance, where that is possible; else as GRID
-    AISLE_WAY_GRID,  // by the grid's search
-    AISLE_WAY_PAPER, // by the paper's own swarm
-    AISLE_WAY_LOCAL  // by the local swarm
+    AISLE_WAY_SHORT,  // exactly, by the tangent search, at the margin
+    AISLE_WAY_CLEAR,  // the same at the creep clearance, where that is possible; else as GRID
+    AISLE_WAY_GRID,   // by the grid's search
+    AISLE_WAY_PAPER,  // by the paper's own swarm
+    AISLE_WAY_REPAIR, // of the free pieces of a remembered answer
+    AISLE_WAY_LOCAL   // by the local swarm
 } aisle_way_kind;
 
 typedef struct aisle_way {
@@ -107,6 +113,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_IDLE,
     AISLE_ROUTE_RECALL,
     AISLE_ROUTE_REPROVE, // what was recalled
+    AISLE_ROUTE_REPAIR,  // a remembered answer that is blocked by now
     AISLE_ROUTE_CHECK,
     AISLE_ROUTE_ORDER,
     AISLE_ROUTE_TANGENT,
@@ -135,6 +142,19 @@ typedef struct aisle_route_guide { // a way that is none for the body as it is; 
     double reach;                  // m, the disc's that it is a way for, with what it keeps
 } aisle_route_guide;
 
+typedef enum aisle_route_repair_phase { AISLE_ROUTE_REPAIR_LOOK, AISLE_ROUTE_REPAIR_SEARCH } aisle_route_repair_phase;
+
+typedef struct aisle_route_repair { // of the answer in `decoded`
+    aisle_route_repair_phase phase;
+    double worth, bound;         // of it
+    double radius;               // m, of the disc whose way is searched
+    uint32_t at;                 // waypoint: the piece that ends there is looked at next
+    uint32_t leg_start, leg_end; // waypoints, of the leg under way
+    uint32_t first, last;        // of the piece of it that is planned anew; last 0: none is blocked
+    uint32_t tries;              // of its search
+    bool is_done;                // it is the answer
+} aisle_route_repair;
+
 typedef struct aisle_route {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
@@ -147,6 +167,7 @@ typedef struct aisle_route {
     aisle_cache cache;
     uint32_t recalled; // entry of it; AISLE_CACHE_NONE: planned anew
     bool forgetful;    // the cache is not asked
+    aisle_route_repair repair;
     aisle_space space;
     aisle_tangent tangent;
     uint32_t tangent_search; // which one, see route_tangent.c

@@ -21,7 +21,7 @@ static bool has_memory(const aisle_route *self) {
     return !self->forgetful && self->cache.capacity > 0U;
 }
 
-static aisle_status plan(aisle_route *self) {
+aisle_status aisle_route_plan_anew(aisle_route *self) {
     memcpy(self->request.goals, self->asked, sizeof self->asked); // in place of a recalled answer's order
     self->recalled = AISLE_CACHE_NONE;
     self->stage = AISLE_ROUTE_CHECK;
@@ -32,13 +32,13 @@ aisle_status aisle_route_recall(aisle_route *self) {
     const aisle_cache_question question = question_of(self);
     aisle_proof *proof = &self->spare;
     if (!has_memory(self) || (self->request.kept > 0 && aisle_route_is_to_order(self))) { // no query asks so
-        return plan(self);
+        return aisle_route_plan_anew(self);
     }
     self->spent += 1U;
     aisle_cache_found found;
     self->recalled = aisle_cache_find(&self->cache, &question, proof->bytes, &found);
     if (self->recalled == AISLE_CACHE_NONE) {
-        return plan(self);
+        return aisle_route_begin_repair(self, &question) ? AISLE_BUSY : aisle_route_plan_anew(self);
     }
     for (int16_t i = 0; i < self->request.num_goals; i++) {
         self->request.goals[i] = self->asked[found.order[i]];
@@ -68,7 +68,7 @@ aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units) {
     if (st != AISLE_OK) {
         self->verify_failed++;
         aisle_cache_disprove(&self->cache, self->recalled);
-        return plan(self);
+        return aisle_route_plan_anew(self);
     }
     proof->basis = *aisle_verify_basis(&self->verify);
     aisle_cache_confirm(&self->cache, self->recalled, self->request.is_query ? &proof->basis : NULL);
@@ -93,6 +93,7 @@ void aisle_route_remember(aisle_route *self) {
                                        .path = self->decoded,
                                        .goals = self->request.goals,
                                        .value = best->value,
+                                       .worth = self->repair.is_done ? self->repair.worth : best->value,
                                        .basis = best->basis};
     aisle_cache_put(&self->cache, &question, &answer);
 }

@@ -66,6 +66,9 @@ static void begin_verify(aisle_route *self) {
 
 // The way built could not be proved or does not fit: what next?
 static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisle_vec2 place) {
+    if (self->way->kind == AISLE_WAY_REPAIR) {
+        return aisle_route_end_repair(self, false);
+    }
     if (self->way->kind == AISLE_WAY_PAPER) { // the paper's way or none
         return aisle_route_give_way_up(self, cause, id, 0.0, place);
     }
@@ -221,6 +224,9 @@ aisle_status aisle_route_step_verify(aisle_route *self, uint32_t units) {
         return disproved(self);
     }
     self->spare.basis = *aisle_verify_basis(&self->verify);
+    if (self->way->kind == AISLE_WAY_REPAIR) {
+        return aisle_route_end_repair(self, true);
+    }
     if (any_swarm_leg(self)) {
         return after_swarm_proof(self);
     }

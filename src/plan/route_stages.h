@@ -1,6 +1,6 @@
 // route_stages.h - what the files of route share with each other and with nobody else. Level 4.
 //
-// route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_check.c: CHECK, NEAREST.
+// route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_repair.c: REPAIR. route_check.c: CHECK, NEAREST.
 // route_order.c: ORDER. route_tangent.c: TANGENT. route_manoeuvre.c: MANOEUVRE. route_seed.c: SEED, TAUT.
 // route_zones.c: ONE_WAY. route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER. route_local.c: LOCAL.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
@@ -61,8 +61,19 @@ static inline bool aisle_route_is_to_order(const aisle_route *self) {
 // route_cache.c
 aisle_status aisle_route_recall(aisle_route *self);
 aisle_status aisle_route_step_reprove(aisle_route *self, uint32_t units);
+// What is remembered is of no use: plans from nothing.
+aisle_status aisle_route_plan_anew(aisle_route *self);
 // The request has ended: a query's answer is remembered, unless it was.
 void aisle_route_remember(aisle_route *self);
+
+// route_repair.c
+
+// Begins REPAIR; false: there is no answer to repair.
+bool aisle_route_begin_repair(aisle_route *self, const aisle_cache_question *question);
+void aisle_route_begin_repair_leg(aisle_route *self);
+aisle_status aisle_route_step_repair(aisle_route *self, uint32_t units);
+// It is built and was proved or not: the answer, or all is planned anew.
+aisle_status aisle_route_end_repair(aisle_route *self, bool is_proved);
 
 // route_check.c
 aisle_status aisle_route_check(aisle_route *self);
@@ -74,6 +85,7 @@ aisle_status aisle_route_step_nearest(aisle_route *self, uint32_t units);
 // Begin the first way; go on to the next, or end the request.
 void aisle_route_begin_ways(aisle_route *self);
 aisle_status aisle_route_next_way(aisle_route *self);
+void aisle_route_begin_repair_way(aisle_route *self);
 // What comes next takes long: AISLE_PARTIAL if there is an answer that was not told yet, else AISLE_BUSY.
 aisle_status aisle_route_announce(aisle_route *self);
 // The way under way has no path; the cause is told if no other has one.

@@ -26,6 +26,10 @@ static const aisle_way quickest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_LEAST_ENERGY}};
 static const aisle_way papers = {AISLE_WAY_PAPER, AISLE_OPTIONS_SHORTEST};
 static const aisle_way local = {AISLE_WAY_LOCAL, AISLE_OPTIONS_SHORTEST};
+static const aisle_way repaired[] = {{AISLE_WAY_REPAIR, AISLE_OPTIONS_SAFEST},
+                                     {AISLE_WAY_REPAIR, AISLE_OPTIONS_SHORTEST},
+                                     {AISLE_WAY_REPAIR, AISLE_OPTIONS_FASTEST},
+                                     {AISLE_WAY_REPAIR, AISLE_OPTIONS_LEAST_ENERGY}};
 static const aisle_way by_grid[] = {{AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_SHORTEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
@@ -74,6 +78,8 @@ static void begin_way(aisle_route *self) {
     self->room = is_clear ? aisle_max(vehicle->creep_clearance + CREEP_SPARE, keep) : keep;
     if (self->way->kind == AISLE_WAY_PAPER) {
         aisle_route_begin_paper(self);
+    } else if (self->way->kind == AISLE_WAY_REPAIR) {
+        aisle_route_begin_repair_leg(self);
     } else if (self->way->kind == AISLE_WAY_LOCAL) {
         aisle_route_begin_local(self);
     } else {
@@ -84,6 +90,14 @@ static void begin_way(aisle_route *self) {
 void aisle_route_begin_ways(aisle_route *self) {
     self->way_index = 0;
     self->way = way_of(self, 0);
+    begin_way(self);
+}
+
+void aisle_route_begin_repair_way(aisle_route *self) {
+    const int8_t wish = self->request.options.objective;
+    AISLE_ASSERT(wish >= AISLE_OPTIONS_SAFEST && wish <= AISLE_OPTIONS_LEAST_ENERGY);
+    self->way_index = 0;
+    self->way = &repaired[wish];
     begin_way(self);
 }
 

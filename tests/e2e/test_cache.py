@@ -4,18 +4,20 @@ import numpy as np
 import pytest
 from aisle import layout_patch_t, options_t, path_t, polygon_t
 from aisle_tools import query, vehicle
+from aisle_tools.bus import Bus
 from aisle_tools.check import Obstacles, check_path
 from aisle_tools.scenario import read_scenario
 from aisle_tools.world import Polygon
+from harness import PATIENCE, URL
 
-HITS, MISSES, KEPT, DROPPED, SPOILED = 16, 17, 18, 19, 20  # counter_id of _DIAG
+HITS, MISSES, KEPT, DROPPED, SPOILED, REPAIRED = 16, 17, 18, 19, 20, 25  # counter_id of _DIAG
 
 
 class Asker:
     """One question, asked as often as wanted; answers are judged on the polygons as they are by then."""
 
     def __init__(self, daemon, scenario):
-        self.daemon, self.world = daemon, scenario.world
+        self.daemon, self.world, self.radius = daemon, scenario.world, scenario.radius
         self.body = vehicle.body(vehicle.make({"radius": scenario.radius, "margin": -1.0}))
         self.leg = query.Leg("1", scenario.start, [scenario.goals[0]])
         self.ident = 0
@@ -85,6 +87,47 @@ def test_a_question_again_is_answered_from_memory_until_something_stands_in_its_
     assert asker.ask().cached
     counts = [daemon.counter(i) for i in (HITS, MISSES, KEPT, DROPPED, SPOILED)]
     assert counts == [3, 2, 1, 1, 0]
+
+
+def test_a_blocked_answer_is_repaired_from_its_free_pieces(asker):
+    daemon = asker.daemon
+    first = asker.ask()
+    at = max(first.waypoints[1:-1], key=lambda w: w.clearance)
+    off = asker.radius + 0.45  # within the creep clearance: the path is to go round by a hand's breadth
+    patch(daemon, asker.world, box(9001, at.x - off * np.sin(at.theta), at.y + off * np.cos(at.theta), 0.02))
+    repaired = asker.ask()
+    assert not repaired.cached and way(repaired) != way(first)
+    assert first.length < repaired.length <= 1.01 * first.length
+    assert [daemon.counter(i) for i in (HITS, MISSES, REPAIRED)] == [0, 2, 1]
+    assert asker.ask().cached
+
+
+def test_clients_at_once_are_answered_in_order_each_with_its_id(daemon, data):
+    path = data / "scenarios" / "field_12_disc.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    scenario = read_scenario(path)
+    legs = [query.Leg("1", scenario.start, [goal]) for goal in (*scenario.goals, (1.0, 19.0))]
+    clients = [Bus(URL, daemon.prefix) for _ in range(4)]
+    heard = [[] for _ in clients]
+    for client, replies in zip(clients, heard):
+        client.subscribe("REPLY", path_t, replies.append, 1000)
+    asked = []
+    for turn in range(10):
+        for number, client in enumerate(clients):
+            asked.append(1000 * (number + 1) + turn)
+            client.publish("QUERY", query.make_query(legs[(turn + number) % len(legs)], asked[-1], 1, options_t(), False))
+    for client, replies in zip(clients, heard):
+        assert client.spin(PATIENCE, lambda r=replies: len(r) >= len(asked))
+    for replies in heard:  # the bus tells everybody, and the ids whose answer it is
+        assert [r.query_id for r in replies] == asked
+        assert all(r.status == path_t.OK for r in replies)
+    ways = {}
+    for number, reply in enumerate(heard[0]):
+        ends = (number % 4 + number // 4) % len(legs)
+        assert way(reply) == ways.setdefault(ends, way(reply))
+    daemon.fresh_status()  # what waited in the queue is heard
+    assert daemon.counter(MISSES) == len(legs) and daemon.counter(HITS) == len(asked) - len(legs)
 
 
 def test_a_daemon_told_to_forget_plans_every_request(make_daemon, data, tmp_path):

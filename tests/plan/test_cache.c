@@ -562,6 +562,38 @@ static void test_in_any_order_the_whole_path_counts(void) {
     }
 }
 
+// Lost to a box that came: to be repaired on that layout, with its worth, until something leaves that may better it.
+static void test_what_a_polygon_has_blocked_can_be_repaired_until_ground_is_freed(void) {
+    know_layout();
+    make_path(40);
+    aisle_cache_answer answer = {
+        .bytes = bytes, .size = size, .path = &path, .goals = visited, .value = 12.0, .worth = 9.5};
+    answer.basis.waypoints = aisle_crc32(0, bytes + AISLE_PATH_AT_WAYPOINTS, size - AISLE_PATH_AT_WAYPOINTS);
+    aisle_cache_put(&cache, &question, &answer);
+    TEST_ASSERT_EQUAL(AISLE_CACHE_NONE, aisle_cache_find_repairable(&cache, &question, out, &found)); // it is good
+    hall_add(6.9, 1.9, 7.1, 2.1);
+    change((const int32_t[]){1, 2});
+    take_in(1);
+    TEST_ASSERT_FALSE(is_known());
+    TEST_ASSERT_NOT_EQUAL(AISLE_CACHE_NONE, aisle_cache_find_repairable(&cache, &question, out, &found));
+    TEST_ASSERT_EQUAL_size_t(size, found.size);
+    TEST_ASSERT_EQUAL_MEMORY(bytes, out, size);
+    TEST_ASSERT_TRUE(found.worth >= 9.5 && found.worth <= 9.5);
+    hall_add(34.0, 24.0, 35.0, 25.0); // far away
+    change((const int32_t[]){1, 2, 3});
+    take_in(1);
+    TEST_ASSERT_NOT_EQUAL(AISLE_CACHE_NONE, aisle_cache_find_repairable(&cache, &question, out, &found));
+    options.objective = AISLE_OPTIONS_FASTEST; // another question
+    TEST_ASSERT_EQUAL(AISLE_CACHE_NONE, aisle_cache_find_repairable(&cache, &question, out, &found));
+    options.objective = AISLE_OPTIONS_SHORTEST;
+    hall_boxes[1] = hall_boxes[2]; // id 2 goes
+    hall_count = 2;
+    change((const int32_t[]){1, 3});
+    take_in(1);
+    TEST_ASSERT_EQUAL(AISLE_CACHE_NONE, aisle_cache_find_repairable(&cache, &question, out, &found));
+    TEST_ASSERT_EQUAL_INT64(1, cache.dropped);
+}
+
 static void test_the_same_layout_said_again_keeps_everything(void) {
     aisle_refusal why;
     know_layout();
@@ -654,6 +686,7 @@ int main(void) {
     RUN_TEST(test_a_path_with_risk_stays_only_where_nothing_leaves);
     RUN_TEST(test_worth_is_counted_in_metres_of_unhindered_way);
     RUN_TEST(test_in_any_order_the_whole_path_counts);
+    RUN_TEST(test_what_a_polygon_has_blocked_can_be_repaired_until_ground_is_freed);
     RUN_TEST(test_the_same_layout_said_again_keeps_everything);
     RUN_TEST(test_another_layout_keeps_nothing);
     RUN_TEST(test_a_path_spoiled_before_a_change_is_not_taken_over);
