@@ -501,7 +501,7 @@ static void fill_next(aisle_drive *self) {
     } else {
         msg->length_bound = 0.0F; // it was one from elsewhere
     }
-    msg->clearance_moving_min = msg->planning_time = 0.0F; // not told
+    msg->clearance_moving_min = msg->planning_time = 0.0F; // told with its lease; not told
     next->at = first_place(count_of(next));
     next->passed = self->passed;
     put_dwell(self, next);

@@ -66,6 +66,8 @@ void aisle_planner_send(aisle_planner *self) {
     const int64_t until = aisle_drive_lease_until(&self->drive);
     aisle_msg_put_int64(out->bytes + AISLE_PATH_AT_UTIME, self->now_us);
     aisle_msg_put_int64(out->bytes + AISLE_PATH_AT_VALID_UNTIL_UTIME, until);
+    const float clearance = aisle_drive_is_stopping(&self->drive) ? 0.0F : out->moving.clearance;
+    aisle_msg_put_float(out->bytes + AISLE_PATH_AT_CLEARANCE_MOVING, clearance);
     queue(self, AISLE_EVENT_PATH, out->bytes, out->size, &out->stamp, &out->moving);
     self->lease_due_us = self->now_us + (until - self->now_us) / 2;
 }

@@ -84,6 +84,7 @@ bool aisle_release_digest(const uint8_t *bytes, size_t size, uint64_t *stamp, ui
     memset(head + AISLE_PATH_AT_UTIME, 0, 8);
     memset(head + AISLE_PATH_AT_VALID_UNTIL_UTIME, 0, 8);
     memset(head + AISLE_PATH_AT_WORK_UNITS, 0, 4);
+    memset(head + AISLE_PATH_AT_CLEARANCE_MOVING, 0, 4);
     *stamp = aisle_digest(waypoints, head, sizeof head);
     if (path != NULL) {
         head[AISLE_PATH_AT_CACHED] = 0;
@@ -113,21 +114,30 @@ static bool is_revocation(const uint8_t *bytes, size_t size) {
     return bytes[status] == AISLE_PATH_NONE && bytes[count] == 0 && bytes[count + 1] <= AISLE_RELEASE_TOLD_MAX;
 }
 
-static int64_t int64_at(const uint8_t *bytes, size_t at) {
+static uint64_t number_at(const uint8_t *bytes, size_t at, size_t size) {
     uint64_t value = 0;
-    for (size_t i = 0; i < 8; i++) {
+    for (size_t i = 0; i < size; i++) {
         value = value << 8 | bytes[at + i];
     }
-    return (int64_t)value;
+    return value;
+}
+
+// No clearance from movers is told but what was proved.
+static bool is_clearance_proved(const uint8_t *bytes, float proved) {
+    const uint32_t bits = (uint32_t)number_at(bytes, AISLE_PATH_AT_CLEARANCE_MOVING, 4);
+    float told;
+    memcpy(&told, &bits, sizeof told);
+    return told >= 0.0F && told <= proved; // false for NaN
 }
 
 // May these bytes, proved on the layout, be driven until the lease in them ends?
 static bool is_lease_proved(const uint8_t *bytes, const aisle_stamp *stamp, const aisle_moving_stamp *moving) {
     if (bytes[AISLE_PATH_AT_STATUS] == AISLE_PATH_STOP) {
-        return true;
+        return is_clearance_proved(bytes, 0.0F);
     }
     return moving != NULL && moving->size == stamp->size && moving->digest == stamp->digest &&
-           int64_at(bytes, AISLE_PATH_AT_VALID_UNTIL_UTIME) <= moving->until_us;
+           (int64_t)number_at(bytes, AISLE_PATH_AT_VALID_UNTIL_UTIME, 8) <= moving->until_us &&
+           is_clearance_proved(bytes, moving->clearance);
 }
 
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
@@ -135,9 +145,10 @@ aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t s
     if (event == NULL || (kind != AISLE_EVENT_PATH && kind != AISLE_EVENT_REPLY)) {
         return AISLE_ERR_ARG;
     }
-    const bool may_leave = is_proved(bytes, size, stamp)
-                               ? kind == AISLE_EVENT_REPLY || is_lease_proved(bytes, stamp, moving)
-                               : is_revocation(bytes, size);
+    const bool may_leave =
+        is_proved(bytes, size, stamp)
+            ? (kind == AISLE_EVENT_REPLY ? is_clearance_proved(bytes, 0.0F) : is_lease_proved(bytes, stamp, moving))
+            : is_revocation(bytes, size);
     if (!may_leave) {
         return AISLE_ERR_ARG;
     }

@@ -155,7 +155,7 @@ typedef enum aisle_verify_fault {
 
 // What a proof leaves behind. Only verify.c writes one; release() checks it.
 typedef struct aisle_stamp {
-    uint64_t digest; // of the proved bytes, the lease's two times and work_units taken as 0
+    uint64_t digest; // of the proved bytes, the lease's two times, clearance_moving_min and work_units taken as 0
     uint32_t size;   // of them; 0: nothing proved
 } aisle_stamp;
 
@@ -164,6 +164,7 @@ typedef struct aisle_moving_stamp {
     uint64_t digest;  // of the bytes, as aisle_stamp has it
     uint32_t size;    // of them; 0: nothing proved
     int64_t until_us; // end of the lease proved
+    float clearance; // m, kept off every mover's reach, body to reach; 0: not told (AISLE_MOVING_CLEARANCE_MAX or more)
 } aisle_moving_stamp;
 
 typedef struct aisle_verify_piece { // from waypoint i-1 to i; verify_piece.c
@@ -260,10 +261,11 @@ const aisle_proof_basis *aisle_verify_basis(const aisle_verify *self);
 
 // The only way out: fills *event for these bytes if the stamp proves just them, or if they are a decodable path_t of
 // status NONE with at most AISLE_RELEASE_TOLD_MAX waypoints (nothing to drive: they tell the reason). utime and
-// valid_until_utime (the lease) and work_units (spent after the proof, too) may have changed since. A PATH to drive, that is
-// of any other status but STOP, needs the moving stamp of the same bytes, too, and a lease that ends when this one does or
-// before. STOP may always be braked along (it does nothing else, see above), and a REPLY gives no lease. Stamps that are not
-// needed may be NULL. AISLE_ERR_ARG otherwise, *event untouched.
+// valid_until_utime (the lease), clearance_moving_min (its proof's) and work_units (spent after the proof, too) may have
+// changed since. A PATH to drive, that is of any other status but STOP, needs the moving stamp of the same bytes, too, a lease
+// that ends when this one does or before, and tells no more clearance than it. STOP may always be braked along (it does nothing
+// else, see above), and a REPLY gives no lease: neither tells any such clearance. Stamps that are not needed may be NULL.
+// AISLE_ERR_ARG otherwise, *event untouched.
 aisle_status aisle_release(aisle_event_kind kind, const uint8_t *bytes, size_t size, const aisle_stamp *stamp,
                            const aisle_moving_stamp *moving, aisle_event *event);
 
@@ -285,6 +287,7 @@ enum {
     AISLE_PATH_AT_STATUS = 84,
     AISLE_PATH_AT_CACHED = 96,
     AISLE_PATH_AT_WORK_UNITS = 97,
+    AISLE_PATH_AT_CLEARANCE_MOVING = 127,
     AISLE_PATH_AT_CERTIFICATE = 135,
     AISLE_PATH_AT_NUM_WAYPOINTS = 139,
     AISLE_PATH_AT_WAYPOINTS = 141

@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "base/check.h"
+#include "base/rounding.h"
 #include "wire/codec.h"
 
 #include <string.h>
@@ -424,7 +425,7 @@ aisle_status aisle_verify_moving_step(aisle_verify_moving *self, uint32_t units,
                                       aisle_moving_stamp *stamp) {
     const aisle_moving_request *request = &self->request;
     aisle_status status = AISLE_BUSY;
-    *stamp = (aisle_moving_stamp){0, 0, 0};
+    *stamp = (aisle_moving_stamp){0, 0, 0, 0.0F};
     if (self->stage == AISLE_MOVING_DONE) {
         status = self->answer;
     } else if (self->movers_revision != request->movers->revision) {
@@ -436,7 +437,11 @@ aisle_status aisle_verify_moving_step(aisle_verify_moving *self, uint32_t units,
     }
     if (status == AISLE_OK) {
         const int64_t until = request->now_us + (int64_t)(request->lease * 1e6);
-        *stamp = (aisle_moving_stamp){.digest = self->digest, .size = (uint32_t)request->size, .until_us = until};
+        const bool told = self->clearance < AISLE_MOVING_CLEARANCE_MAX;
+        *stamp = (aisle_moving_stamp){.digest = self->digest,
+                                      .size = (uint32_t)request->size,
+                                      .until_us = until,
+                                      .clearance = told ? aisle_float_below(self->clearance) : 0.0F};
     }
     return status;
 }

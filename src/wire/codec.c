@@ -463,6 +463,12 @@ void aisle_msg_put_int32(void *at, int32_t value) {
     store32(at, (uint32_t)value);
 }
 
+void aisle_msg_put_float(void *at, float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    store32(at, bits);
+}
+
 const char *aisle_msg_name(aisle_msg_type type) {
     return is_type(type) ? aisle_wire_types[type].name : "?";
 }

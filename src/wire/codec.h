@@ -71,6 +71,7 @@ bool aisle_msg_field_offset(aisle_msg_type type, const char *name, size_t *offse
 // Overwrite an encoded number, e.g. a utime found by aisle_msg_field_offset().
 void aisle_msg_put_int64(void *at, int64_t value);
 void aisle_msg_put_int32(void *at, int32_t value);
+void aisle_msg_put_float(void *at, float value);
 
 // Of a type; 0 or "?" for none. name: as in its .lcm file ("path_t"). max_size: a buffer of so many bytes never is
 // too small for what encode or decode accepts. struct_size: sizeof of the C struct. fingerprint: as lcm-gen has it.

@@ -30,12 +30,15 @@ static void setup_hall(double w, double h) {
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_vehicle_from_msg(&msg, &limits, &why));
 }
 
+static double nearest_told; // m, clearance_moving_min of all paths; 1e9: none was told
+
 static void open_hall(double x, double y, double theta) {
     door_open(0);
     TEST_ASSERT_EQUAL(AISLE_OK, door_layout(1));
     door_settle();
     memset(&agv, 0, sizeof agv);
     memset(&seen, 0, sizeof seen);
+    nearest_told = 1e9;
     here = door_pose(x, y, theta);
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
 }
@@ -57,6 +60,9 @@ static void take_path(void) {
         agv.t = 0.0;
     }
     agv.path.valid_until_utime = door_path.valid_until_utime;
+    if (door_path.clearance_moving_min > 0.0F) {
+        nearest_told = fmin(nearest_told, (double)door_path.clearance_moving_min);
+    }
 }
 
 static void move(double dt) {
@@ -135,6 +141,7 @@ static void test_a_vehicle_alone_follows_one_path_to_its_goal(void) {
     go(1, 18.0, 5.0);
     TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
     TEST_ASSERT_EQUAL_INT32(1, agv.revision);
+    TEST_ASSERT_TRUE(nearest_told > 1e8);
 }
 
 static void test_a_person_far_away_changes_nothing(void) {
@@ -154,6 +161,8 @@ static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
     TEST_ASSERT_EQUAL_INT(-1, drive_to(18.0, 1.5, 600));
     TEST_ASSERT_TRUE(here.x > 8.0 && here.x < 11.0);
     TEST_ASSERT_TRUE(here.vx < 0.01F);
+    TEST_ASSERT_TRUE(nearest_told > 0.0 &&
+                     nearest_told < 1.0); // the way to the person's reach, as told with each lease
     TEST_ASSERT_EQUAL(AISLE_STATUS_BLOCKED, status_now().state);
     TEST_ASSERT_EQUAL_INT32(7, status_now().cause_id);
     seen.num_obstacles = 0;

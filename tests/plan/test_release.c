@@ -10,7 +10,7 @@ static void proved_path(void) {
     path_arc(0.5, 1.0);
     path_end();
     TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
-    moving = (aisle_moving_stamp){stamp.digest, stamp.size, 2000}; // the lease of the fixture
+    moving = (aisle_moving_stamp){stamp.digest, stamp.size, 2000, 0.0F}; // the lease of the fixture
 }
 
 static aisle_status release(void) {
@@ -47,13 +47,13 @@ static void test_a_path_to_drive_needs_the_proof_of_its_lease(void) {
         path.status = status[i];
         path_seal();
         TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
-        moving = (aisle_moving_stamp){stamp.digest, right.size, right.until_us};
+        moving = (aisle_moving_stamp){stamp.digest, right.size, right.until_us, 0.0F};
         TEST_ASSERT_EQUAL(AISLE_OK, release());
         moving.digest ^= 1U;
         assert_refused();
-        moving = (aisle_moving_stamp){stamp.digest, right.size - 1U, right.until_us};
+        moving = (aisle_moving_stamp){stamp.digest, right.size - 1U, right.until_us, 0.0F};
         assert_refused();
-        moving = (aisle_moving_stamp){0, 0, 0};
+        moving = (aisle_moving_stamp){0, 0, 0, 0.0F};
         assert_refused();
         event = untouched;
         TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
@@ -75,6 +75,21 @@ static void test_no_lease_ends_later_than_the_proved_one(void) {
     }
 }
 
+static void test_no_more_clearance_from_movers_is_told_than_was_proved(void) {
+    const float told[7] = {0.0F, 0.3F, 0.30001F, -0.1F, NAN, INFINITY, 1e-30F};
+    const bool may_leave[7] = {true, true, false, false, false, false, true};
+    moving.clearance = 0.3F;
+    for (int i = 0; i < 7; i++) {
+        aisle_msg_put_float(path_bytes + AISLE_PATH_AT_CLEARANCE_MOVING, told[i]);
+        TEST_ASSERT_EQUAL(may_leave[i] ? AISLE_OK : AISLE_ERR_ARG, release());
+        TEST_ASSERT_EQUAL(i == 0 ? AISLE_OK : AISLE_ERR_ARG, // a reply has no lease
+                          aisle_release(AISLE_EVENT_REPLY, path_bytes, path_size, &stamp, &moving, &event));
+    }
+    size_t offset = 0;
+    TEST_ASSERT_TRUE(aisle_msg_field_offset(AISLE_MSG_PATH, "clearance_moving_min", &offset));
+    TEST_ASSERT_EQUAL_size_t(AISLE_PATH_AT_CLEARANCE_MOVING, offset);
+}
+
 static void test_a_path_that_only_brakes_needs_no_lease(void) {
     path_begin(0.0, 0.0, 0.0);
     path_turn(0.1);
@@ -83,6 +98,9 @@ static void test_a_path_that_only_brakes_needs_no_lease(void) {
     path_seal();
     TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verified());
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
+    aisle_msg_put_float(path_bytes + AISLE_PATH_AT_CLEARANCE_MOVING, 0.1F);
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
+    aisle_msg_put_float(path_bytes + AISLE_PATH_AT_CLEARANCE_MOVING, 0.0F);
     stamp.digest ^= 1U;
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_release(AISLE_EVENT_PATH, path_bytes, path_size, &stamp, NULL, &event));
 }
@@ -256,6 +274,7 @@ int main(void) {
     RUN_TEST(test_the_bytes_that_were_proved_leave);
     RUN_TEST(test_a_path_to_drive_needs_the_proof_of_its_lease);
     RUN_TEST(test_no_lease_ends_later_than_the_proved_one);
+    RUN_TEST(test_no_more_clearance_from_movers_is_told_than_was_proved);
     RUN_TEST(test_a_path_that_only_brakes_needs_no_lease);
     RUN_TEST(test_a_renewed_lease_leaves);
     RUN_TEST(test_any_other_byte_changed_stays);

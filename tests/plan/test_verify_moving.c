@@ -47,7 +47,7 @@ static aisle_status prove_in_steps_of(uint32_t units) {
     aisle_verify_moving_start(&moving, &asked);
     do {
         const uint32_t before = spent;
-        moving_stamp = (aisle_moving_stamp){1, 1, 1};
+        moving_stamp = (aisle_moving_stamp){1, 1, 1, 1.0F};
         status = aisle_verify_moving_step(&moving, units, &spent, &moving_stamp);
         TEST_ASSERT_TRUE(status == AISLE_BUSY ? spent - before == units : spent - before <= units);
         const bool given = moving_stamp.size > 0 && moving_stamp.digest != 0 && moving_stamp.until_us != 0;
@@ -341,6 +341,7 @@ static void test_without_movers_the_stamp_is_given_at_once_for_the_whole_lease(v
     TEST_ASSERT_EQUAL_UINT64(stamp.digest, moving_stamp.digest);
     TEST_ASSERT_EQUAL_UINT32(stamp.size, moving_stamp.size);
     TEST_ASSERT_EQUAL_DOUBLE(AISLE_MOVING_CLEARANCE_MAX, moving.clearance);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, moving_stamp.clearance); // more is not told
     asked.lease = 0.25;
     assert_proved();
     TEST_ASSERT_EQUAL_INT64(NOW + 250000, moving_stamp.until_us);
@@ -390,6 +391,7 @@ static void test_what_stands_beside_the_way_is_kept_off_by_the_margin(void) {
         m->at.y = sides[i] * (0.35 + 0.05 + 0.3 + 0.1 + 0.03 + 1e-4);
         assert_proved();
         TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.1, moving.clearance);
+        TEST_ASSERT_TRUE((double)moving_stamp.clearance <= moving.clearance && moving_stamp.clearance > 0.05F);
         vehicle.margin = 0.2;
         assert_refused();
         vehicle.margin = 0.1;
