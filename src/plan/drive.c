@@ -337,6 +337,12 @@ static aisle_status change(aisle_drive *self, aisle_drive_verdict *verdict) {
     return end(self, AISLE_DRIVE_CHANGE, verdict);
 }
 
+// s. It may take the whole reaction time to obey; and what is left of a dwell may be over for it at once, or not: a
+// controller counts it for itself, and one that is sent a path that begins on a goal may have done with it.
+static double lateness(const aisle_drive *self) {
+    return self->world.vehicle->reaction_time + self->rest;
+}
+
 static void begin_moving(aisle_drive *self, const aisle_drive_path *path, aisle_drive_stage stage) {
     const aisle_moving_request request = {.vehicle = self->world.vehicle,
                                           .movers = self->world.movers,
@@ -346,12 +352,11 @@ static void begin_moving(aisle_drive *self, const aisle_drive_path *path, aisle_
                                           .at_piece = path->at.piece,
                                           .at_u = path->at.u,
                                           .v = self->v,
-                                          .rest = self->rest,
                                           .goals = self->goals + path->passed,
                                           .num_goals = self->num_goals - path->passed,
                                           .now_us = self->cycle_us,
                                           .lease = self->lease,
-                                          .late = self->world.vehicle->reaction_time};
+                                          .late = lateness(self)};
     aisle_verify_moving_start(&self->moving, &request);
     self->stage = stage;
 }
@@ -398,7 +403,7 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
                                         .v = moves ? self->v : 0.0,
                                         .base = moves ? &self->base : NULL,
                                         .now_us = self->cycle_us,
-                                        .late = self->world.vehicle->reaction_time,
+                                        .late = lateness(self),
                                         .lease = moves ? AISLE_DRIVE_PACE_LEASE : START_LEASE,
                                         .first = level,
                                         .current = present_level(self)};

@@ -314,6 +314,7 @@ static aisle_status make_level(aisle_pace *self, uint32_t *spent) {
                                       .at = {front.n > 1 ? 1U : 0U, 0.0},
                                       .v = request->v,
                                       .cap = (double)INFINITY,
+                                      .rested = (double)INFINITY,
                                       .lease = lease_of(self),
                                       .late = request->late,
                                       .spacing = aisle_max(SPACING, reach / PLACES)};

@@ -55,8 +55,9 @@ typedef struct aisle_pace_request {
     double v;                      // m/s >= 0, and how fast
     const aisle_verify_base *base; // of what is under way, its place being `at`, too; NULL: nothing is, or it rests
     int64_t now_us;
-    double lease;     // s > 0
-    double late;      // s >= 0, that the vehicle may be later than its path says beyond AISLE_PACE_LAG
+    double lease; // s > 0
+    double late;  // s >= 0, that the vehicle may be later than its path says beyond AISLE_PACE_LAG, which says that it
+                  // does not rest where it is
     uint32_t first;   // fastest level to be tried; AISLE_PACE_STOP: stop
     uint32_t current; // level of what is under way; AISLE_PACE_STOP if it rests or nothing is
 } aisle_pace_request;

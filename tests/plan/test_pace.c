@@ -485,7 +485,7 @@ static void test_it_names_the_mover_that_slows_it_and_none_if_none_does(void) {
     TEST_ASSERT_TRUE(pace.level == 0 && !pace.limit.is_known);
 }
 
-static void test_a_vehicle_at_rest_beside_a_mover_stays_and_one_that_waits_need_not_care(void) {
+static void test_a_vehicle_at_rest_beside_a_mover_stays_whatever_is_left_of_its_wait(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(10.0, 1.0);
     dwell[0] = 4.0F;
@@ -500,6 +500,10 @@ static void test_a_vehicle_at_rest_beside_a_mover_stays_and_one_that_waits_need_
     movers.count = 0;
     put_mover(5.9, 0.0, 0.3, 1.0);
     request.at = (aisle_place){5, 1.0};
+    TEST_ASSERT_EQUAL_INT(AISLE_PARTIAL, run(&request, &out));
+    TEST_ASSERT_EQUAL_INT(1, out.num_waypoints);
+    movers.count = 0;
+    put_mover(-9.0, 0.0, 0.3, 1.0);
     TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request, &out));
     TEST_ASSERT_EQUAL_UINT32(0, pace.level);
 }
@@ -559,7 +563,7 @@ int main(void) {
     RUN_TEST(test_one_that_has_not_quite_come_to_rest_where_a_turn_begins_goes_on);
     RUN_TEST(test_a_faster_level_than_the_present_one_must_hold_longer);
     RUN_TEST(test_it_names_the_mover_that_slows_it_and_none_if_none_does);
-    RUN_TEST(test_a_vehicle_at_rest_beside_a_mover_stays_and_one_that_waits_need_not_care);
+    RUN_TEST(test_a_vehicle_at_rest_beside_a_mover_stays_whatever_is_left_of_its_wait);
     RUN_TEST(test_any_slicing_gives_the_same_path_and_units);
     RUN_TEST(test_without_room_for_a_change_of_speed_it_says_so);
     return UNITY_END();

@@ -220,13 +220,37 @@ static void test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one(voi
     TEST_ASSERT_TRUE(highest > 10.0);
 }
 
-// ---- stops and what follows them
-
 static void ticks(int n) {
     for (int i = 0; i < n; i++) {
         tick();
     }
 }
+
+// How long a dwell is left is the vehicle's own count: by the planner's it may still have seconds.
+static void test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once(void) {
+    setup_hall(20.0, 3.0);
+    open_hall(2.0, 1.5, 0.0);
+    aisle_goal_list_msg goals = door_goals(1, 8.0, 1.5);
+    goals.goals[0].dwell = 8.0F;
+    goals.goals[1] = goals.goals[0];
+    goals.goals[1].id = goals.goals[0].id + 1;
+    goals.goals[1].x = 18.0;
+    goals.num_goals = 2;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
+    door_settle();
+    for (int i = 0; i < 400 && hypot(here.x - 8.0, here.y - 1.5) > 0.01; i++) {
+        tick();
+    }
+    ticks(20);
+    TEST_ASSERT_TRUE(agv.drives && here.vx < 0.01F);
+    see(7, 9.5, 1.5, 0.0, 0.0);
+    ticks(4);
+    TEST_ASSERT_FALSE(agv.drives);
+    seen.num_obstacles = 0;
+    TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 900) > 100); // 5 s and more, for what was left of the dwell
+}
+
+// ---- stops and what follows them
 
 static void command(int8_t what, int32_t arg) {
     static int32_t id;
@@ -460,6 +484,7 @@ int main(void) {
     RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
     RUN_TEST(test_a_way_round_that_is_none_is_looked_for_ever_more_rarely);
     RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
+    RUN_TEST(test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once);
     RUN_TEST(test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one);
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
     RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);
