@@ -391,7 +391,7 @@ def test_a_click_on_a_mover_tells_of_it(shown):
     held = {"x": box[0] + x, "y": box[1] + y, "button": "left", "clickCount": 1}
     shown.mouse("mousePressed", buttons=1, **held)
     shown.mouse("mouseReleased", **held)
-    shown.until("document.getElementById('facts').textContent.includes('mover 42')")
+    shown.until("document.getElementById('facts').textContent.includes('mover 42person')")
     told = shown.js("document.getElementById('facts').textContent")
     away = math.hypot(8.0 - 1.0 - V * 6.05, 8.0 - 0.2 * 6.05 - 2.0)
     assert f"mover 42person, 0.20 of at most 1.60 m/s, {away:.2f} m away, measured 0.05 s ago, reach 0.48 m" in told
