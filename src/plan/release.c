@@ -87,6 +87,7 @@ bool aisle_release_digest(const uint8_t *bytes, size_t size, uint64_t *stamp, ui
     memset(head + AISLE_PATH_AT_CLEARANCE_MOVING, 0, 4);
     *stamp = aisle_digest(waypoints, head, sizeof head);
     if (path != NULL) {
+        memcpy(head + AISLE_PATH_AT_CLEARANCE_MOVING, bytes + AISLE_PATH_AT_CLEARANCE_MOVING, 4);
         head[AISLE_PATH_AT_CACHED] = 0;
         memset(head + AISLE_PATH_AT_CERTIFICATE, 0, 4);
         *path = aisle_digest(waypoints, head + AISLE_PATH_AT_STATUS, sizeof head - AISLE_PATH_AT_STATUS);
