@@ -137,7 +137,12 @@ class Browser:
         self.call("Input.dispatchKeyEvent", type="keyUp", **common)
 
     def mouse(self, kind: str, x: float, y: float, **more: Any) -> None:
+        """Returns when the page has handled it, which may be after the browser has taken it; a second later at most."""
+        event = {"mousePressed": "pointerdown", "mouseReleased": "pointerup", "mouseMoved": "pointermove"}.get(kind, "wheel")
+        heard = f"addEventListener('{event}', () => setTimeout(done), {{ once: true, capture: true }})"
+        self.js(f"window.heard = new Promise((done) => {{ setTimeout(done, 1000); {heard}; }}), 0")
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+        self.js("window.heard.then(() => 0)")
 
     def drag(self, x0: float, y0: float, x1: float, y1: float) -> None:
         held = {"button": "left", "buttons": 1}
