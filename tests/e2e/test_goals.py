@@ -147,3 +147,31 @@ def test_skipping_the_last_goal_ends_the_list(rider):
     assert rider.ride(30.0, lambda: is_finished(rider, 1))
     assert rider.ride(30.0, lambda: rider.daemon.paths[-1][1].status == path_t.NONE)
     assert rider.daemon.paths[-1][1].cause == 0
+
+
+def test_a_daemon_killed_under_way_leaves_a_lease_and_the_next_one_begins_where_the_vehicle_stands(rider, data):
+    daemon = rider.daemon
+    rider.send(goal_list(1, FAR))
+    assert rider.ride(20.0, lambda: rider.speed > 0.3)
+    boot = daemon.status.boot_id
+    daemon.kill()
+    rider.ride(1.3)  # the lease is over after a second
+    assert rider.speed == 0.0
+    here = rider.pose
+    assert abs(here[1] - FAR[1]) > 0.1  # on the way
+    begin = len(daemon.paths)
+    assert daemon.start().boot_id != boot
+    rider.ride(0.5)
+    assert all(p.status == path_t.NONE for _, p in daemon.paths[begin:]) and rider.pose == here
+    assert daemon.status.cause == status_t.NO_LAYOUT
+    path = data / "scenarios" / "barrier_2.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    rider.ride(0.3)
+    rider.send(goal_list(1, FAR))
+    assert rider.ride(20.0, on_the_way(rider, 11))
+    first = next(p for _, p in daemon.paths[begin:] if p.status == path_t.OK)
+    assert first.boot_id == daemon.status.boot_id and first.waypoints[0].v == 0.0
+    assert (first.waypoints[0].x, first.waypoints[0].y) == pytest.approx(here[:2], abs=1e-6)
+    assert rider.ride(30.0, lambda: daemon.status.state == status_t.IDLE)
+    assert rider.pose[:2] == pytest.approx(FAR, abs=0.05)

@@ -323,6 +323,36 @@ static void test_a_stale_pose_brakes_the_vehicle_within_the_timeout(void) {
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_POSE_STALE, status_now().cause);
 }
 
+static void test_a_clock_that_leaps_ahead_brakes_the_vehicle_until_poses_come_by_it(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    TEST_ASSERT_TRUE(here.vx > 1.0F);
+    door_now += 3600 * (int64_t)1000000; // whatever is known is an hour old
+    door_settle();
+    take_path();
+    is_braking(AISLE_STATUS_POSE_STALE);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+}
+
+static void test_poses_by_a_clock_set_back_are_none_and_brake_the_vehicle_within_the_timeout(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    const int64_t last = door_now;
+    while (agv.path.status != AISLE_PATH_STOP && door_now < last + 1000000) {
+        door_now += 10000;
+        here.utime = door_now - 5000000;
+        here.seq++;
+        (void)door_submit(AISLE_INPUT_POSE, &here);
+        door_settle();
+        take_path();
+    }
+    is_braking(AISLE_STATUS_POSE_STALE);
+    TEST_ASSERT_TRUE(door_now - last <= (int64_t)(limits.pose_timeout * 1e6) + 100000);
+    TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0); // the clock is right again
+}
+
 static void test_a_pose_that_comes_back_lets_the_vehicle_drive_on(void) {
     open_hall(2.0, 5.0, 0.0);
     go(1, 18.0, 5.0);
@@ -489,6 +519,8 @@ int main(void) {
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
     RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);
     RUN_TEST(test_a_stale_pose_brakes_the_vehicle_within_the_timeout);
+    RUN_TEST(test_a_clock_that_leaps_ahead_brakes_the_vehicle_until_poses_come_by_it);
+    RUN_TEST(test_poses_by_a_clock_set_back_are_none_and_brake_the_vehicle_within_the_timeout);
     RUN_TEST(test_a_pose_that_comes_back_lets_the_vehicle_drive_on);
     RUN_TEST(test_a_vehicle_that_is_not_localized_brakes);
     RUN_TEST(test_a_pose_off_the_path_brakes_and_plans_anew_from_rest);
