@@ -36,6 +36,16 @@ static void enter(aisle_band_walk *self, uint32_t piece, double u) {
     }
 }
 
+// Of the path, where it is.
+static double speed_here(const aisle_band_walk *self) {
+    if (self->leg.parts == 0) {
+        return 0.0;
+    }
+    const aisle_motion_phase *part = &self->leg.part[self->phase];
+    const double p0 = part->v0 * part->v0, p1 = part->v1 * part->v1;
+    return sqrt(aisle_max(p0 + (p1 - p0) * (self->way / part->way), 0.0));
+}
+
 bool aisle_band_walk_begin(aisle_band_walk *self, const aisle_band_motion *motion) {
     AISLE_ASSERT(aisle_place_exists(motion->n, motion->at) && motion->v >= 0.0 && motion->cap >= 0.0);
     *self = (aisle_band_walk){.motion = *motion};
@@ -53,7 +63,11 @@ bool aisle_band_walk_begin(aisle_band_walk *self, const aisle_band_motion *motio
     if (self->leg.parts == 0) { // of a wait what is left passes at once
         self->way = at.u;
     }
-    self->from_square = self->leg.on_spot ? 0.0 : motion->v * motion->v;
+    self->from_square = motion->v * motion->v;
+    if (self->leg.on_spot) {
+        const double rate = aisle_max(motion->omega, speed_here(self));
+        self->from_square = rate * rate;
+    }
     return true;
 }
 
@@ -80,9 +94,21 @@ static double straight_part(const line *l, uint32_t n, double end) {
     return end;
 }
 
+static double least_at(const line *l, double z) {
+    return aisle_max(aisle_min(line_at(l[0], z), aisle_min(line_at(l[1], z), line_at(l[2], z))), 0.0);
+}
+
 static double square_at(const line *l, double z) {
-    const double allowed = aisle_min(line_at(l[0], z), aisle_min(line_at(l[1], z), line_at(l[2], z)));
-    return aisle_max(aisle_max(line_at(l[3], z), allowed), 0.0);
+    return aisle_max(line_at(l[3], z), least_at(l, z));
+}
+
+// m or rad to the end of the piece in hand.
+static double left_of_leg(const aisle_band_walk *self) {
+    double left = self->leg.way - self->way;
+    for (uint32_t k = 0; k < self->phase; k++) {
+        left -= self->leg.part[k].way;
+    }
+    return aisle_max(left, 0.0);
 }
 
 // The part of the phase in hand from here on.
@@ -92,13 +118,18 @@ static aisle_band_part next_part(const aisle_band_walk *self) {
     const line path = {p0 + slope * self->way, slope};
     const double left = phase->way - self->way;
     aisle_band_part part = {.x0 = self->x, .t0 = self->t};
+    const aisle_vehicle *vehicle = self->motion.vehicle;
     if (self->leg.on_spot) {
-        part.x1 = self->x + left;
-        part.q0 = aisle_max(path.at, 0.0);
-        part.q1 = aisle_max(line_at(path, left), 0.0);
+        const double gain = 2.0 * vehicle->alpha_max;
+        const line rates[3] = {{vehicle->omega_max * vehicle->omega_max, 0.0},
+                               {self->from_square + gain * self->x, gain},
+                               {gain * left_of_leg(self), -gain}};
+        const double end = straight_part(rates, 3, left);
+        part.x1 = self->x + end;
+        part.q0 = least_at(rates, 0.0);
+        part.q1 = least_at(rates, end);
         return part;
     }
-    const aisle_vehicle *vehicle = self->motion.vehicle;
     const double up = 2.0 * vehicle->a_max, down = 2.0 * vehicle->d_max, cap = self->motion.cap;
     const line lines[4] = {
         path,

@@ -35,7 +35,7 @@ typedef struct aisle_band {
 } aisle_band;
 
 // How it drives on from a place: as the path says, but no faster than cap nor than a_max allows from v; a speed v above
-// either is braked down with d_max.
+// either is braked down with d_max. A turn that is at a rate omega above the path's goes on from that, as fast as it can.
 typedef struct aisle_band_motion {
     const aisle_vehicle *vehicle;
     const aisle_waypoint_msg *w; // [n] with speeds and times
@@ -43,6 +43,7 @@ typedef struct aisle_band_motion {
     const float *dwell; // [n] or NULL
     aisle_place at;
     double v, cap;  // m/s
+    double omega;   // rad/s, of a turn on the spot that it is in; 0: as the path says
     double rested;  // s, that it has been at rest where it is, of the rest before the piece it is to begin (u = 0)
     double lease;   // s
     double late;    // s >= 0, that it may be behind its times; at most until the last one has braked

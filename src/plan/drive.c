@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define RESTING 0.01    // rad/s: a slower turn is rest
+#define STILL 0.05      // m/s, rad/s: faster a vehicle without a path is not sent off
 #define BACK 0.3        // m, how far behind its last place the vehicle may be found
 #define AHEAD 0.5       // m, and ahead of where it could have got to
 #define AGE_MAX 0.3     // s, a pose is moved on by at most
@@ -141,14 +142,19 @@ void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const a
     const double ahead = AHEAD + since * vehicle->v_max;
     AISLE_ASSERT(self->stage == AISLE_DRIVE_IDLE);
     self->v = aisle_vec2_length(aisle_vec2_of((double)pose->vx, (double)pose->vy));
-    self->is_resting = self->v < AISLE_PACE_RESTING && fabs((double)pose->omega) < RESTING;
+    self->omega = fabs((double)pose->omega);
+    self->is_resting = self->v < AISLE_PACE_RESTING && self->omega < RESTING;
     self->at_us = pose->utime;
     if (!self->has_plan) {
         return;
     }
-    self->plan.at = find(&self->plan, ahead, here, &self->off);
-    if (self->has_out) {
-        self->out.at = find(&self->out, ahead, here, &self->off);
+    if (self->has_out) { // and the same on the plan, though what is out may begin ahead of the pose
+        const aisle_drive_path *out = &self->out;
+        self->out.at = find(out, ahead, here, &self->off);
+        const aisle_pose2 place = aisle_motion_pose(out->msg->waypoints, count_of(out), out->at);
+        self->plan.at = find(&self->plan, ahead + AHEAD, place, NULL);
+    } else {
+        self->plan.at = find(&self->plan, ahead, here, &self->off);
     }
     self->is_off = self->off.lateral > aisle_max(vehicle->margin, AISLE_DRIVE_OFF) ||
                    fabs(self->off.heading) > AISLE_DRIVE_OFF_HEADING;
@@ -352,6 +358,7 @@ static void begin_moving(aisle_drive *self, const aisle_drive_path *path, aisle_
                                           .at_piece = path->at.piece,
                                           .at_u = path->at.u,
                                           .v = self->v,
+                                          .omega = self->omega,
                                           .goals = self->goals + path->passed,
                                           .num_goals = self->num_goals - path->passed,
                                           .now_us = self->cycle_us,
@@ -401,6 +408,7 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
                                         .dwell = plan->dwell,
                                         .at = plan->at,
                                         .v = moves ? self->v : 0.0,
+                                        .omega = moves ? self->omega : 0.0,
                                         .base = moves ? &self->base : NULL,
                                         .now_us = self->cycle_us,
                                         .late = lateness(self),
@@ -416,6 +424,9 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
 static aisle_status step_check(aisle_drive *self, aisle_drive_verdict *verdict) {
     if (self->stops && (!aisle_drive_moves(self) || aisle_drive_is_stopping(self))) {
         return end(self, AISLE_DRIVE_KEEP, verdict); // it stands, or brakes already
+    }
+    if (!self->has_out && !(self->v < STILL && self->omega < STILL)) { // it brakes still, where no proof sees it
+        return end(self, AISLE_DRIVE_KEEP, verdict);
     }
     if (self->stops) {
         self->brakes = true;

@@ -14,6 +14,8 @@
 // and ends with a verdict. Hysteresis: what may go on is not touched but for the better, and then at most every
 // AISLE_DRIVE_SPEED_UP_US.
 //
+// Nothing is sent to a vehicle that has no path while it is faster than 0.05 m/s or rad/s: it brakes, where no proof sees it.
+//
 // Where the vehicle is: the pose, projected onto the path within a window about where it was, moved on by what the path
 // does in the pose's age. It is off the path if the nearest place there is farther than the margin (at least
 // AISLE_DRIVE_OFF) or its heading more than AISLE_DRIVE_OFF_HEADING away. It passes no goal that is not counted as
@@ -80,7 +82,7 @@ typedef struct aisle_drive {
     bool is_fresh;              // next holds the plan as it was proved, not sent yet
     bool must_change;           // the plan, or what it rests on, is new
     bool is_unfit;              // the plan does not prove any more on what it rests on
-    double v;                   // m/s, the vehicle's along its path
+    double v, omega;            // m/s, the vehicle's along its path; rad/s
     double rest;                // s, left of the dwell where it stands
     int64_t at_us;              // when it was at `at`
     aisle_off off;              // from the path, by the last pose

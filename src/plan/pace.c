@@ -233,8 +233,10 @@ static void stop_turn(aisle_pace *self, knots *path) {
     const aisle_place rest = aisle_motion_rest(request->vehicle, request->w, request->n, request->dwell, request->at,
                                                0.0, AISLE_PACE_LATENCY);
     end_with(path, 1);
-    if (rest.piece == request->at.piece) {
+    if (rest.piece == request->at.piece && rest.u < 1.0) { // and not at the goal that may be its end
         path->w[1].theta = aisle_motion_pose(request->w, request->n, rest).theta;
+        path->w[1].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
+        path->w[1].goal_id = 0;
     }
     if (fabs(aisle_piece_turn(&path->w[0], &path->w[1])) < AISLE_CURVE_HEADING_TOLERANCE) {
         end_with(path, 0);
@@ -313,6 +315,7 @@ static aisle_status make_level(aisle_pace *self, uint32_t *spent) {
                                       .dwell = front.dwell,
                                       .at = {front.n > 1 ? 1U : 0U, 0.0},
                                       .v = request->v,
+                                      .omega = request->omega,
                                       .cap = (double)INFINITY,
                                       .rested = (double)INFINITY,
                                       .lease = lease_of(self),

@@ -53,6 +53,7 @@ typedef struct aisle_pace_request {
     const float *dwell;            // [n] s of rest at each, as in profile.h; NULL: none
     aisle_place at;                // where the vehicle is on it
     double v;                      // m/s >= 0, and how fast
+    double omega;                  // rad/s >= 0, and in a turn on the spot
     const aisle_verify_base *base; // of what is under way, its place being `at`, too; NULL: nothing is, or it rests
     int64_t now_us;
     double lease; // s > 0

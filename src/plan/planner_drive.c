@@ -322,7 +322,7 @@ static void tell_verdict(aisle_planner *self, aisle_drive_verdict verdict) {
         aisle_planner_send(self);
         break;
     case AISLE_DRIVE_KEEP:
-        if (!drive->stops && self->now_us >= self->lease_due_us) {
+        if (drive->has_out && !drive->stops && self->now_us >= self->lease_due_us) {
             aisle_planner_send(self);
         }
         break;

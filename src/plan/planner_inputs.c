@@ -125,6 +125,8 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
 
 // ---- pose
 
+#define RATE_MAX 100.0 // m/s, rad/s; a faster vehicle is none
+
 static void note_progress(aisle_planner *self) {
     const bool is_known = aisle_planner_pose_hindrance(self).cause == 0;
     uint32_t reached = aisle_mission_note_pose(&self->mission, &self->vehicle, is_known ? &self->pose : NULL);
@@ -151,7 +153,11 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
     if (self->drive.stage != AISLE_DRIVE_IDLE) {
         return AISLE_BUSY;
     }
-    if (fabs(msg->x) > AISLE_SHAPE_COORD_MAX || fabs(msg->y) > AISLE_SHAPE_COORD_MAX || fabs(msg->theta) > 1e4) {
+    const bool is_place =
+        fabs(msg->x) <= AISLE_SHAPE_COORD_MAX && fabs(msg->y) <= AISLE_SHAPE_COORD_MAX && fabs(msg->theta) <= 1e4;
+    const bool is_slow =
+        fabs((double)msg->vx) <= RATE_MAX && fabs((double)msg->vy) <= RATE_MAX && fabs((double)msg->omega) <= RATE_MAX;
+    if (!is_place || !is_slow) {
         return aisle_planner_reject(self, AISLE_STATUS_MALFORMED, msg->seq);
     }
     if (self->has_pose && msg->utime < self->pose.utime) {

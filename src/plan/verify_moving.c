@@ -45,9 +45,10 @@ static double fastest(const aisle_verify_moving *self) {
 static void set_bounds(aisle_verify_moving *self) {
     const aisle_vehicle *vehicle = self->request.vehicle;
     const double driven = vehicle->reaction_time + self->request.lease, v = fastest(self);
+    const double omega = aisle_max(vehicle->omega_max, self->request.omega) * (1.0 + VERIFY_TOLERANCE);
     self->window = v * driven + 0.5 * v * v / vehicle->d_max;
-    self->last = driven + aisle_max(v / vehicle->d_max, vehicle->omega_max / vehicle->alpha_max) + AISLE_DRIVE_LAG +
-                 self->request.late;
+    self->last =
+        driven + aisle_max(v / vehicle->d_max, omega / vehicle->alpha_max) + AISLE_DRIVE_LAG + self->request.late;
     self->box = (aisle_aabb){{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
 }
 
@@ -154,7 +155,7 @@ static aisle_status begin_run(aisle_verify_moving *self, const aisle_moving_phas
     aisle_moving_motion *motion = &self->motion;
     motion->leaves_rest = false;
     self->piece = motion->piece;
-    self->origin = motion->run - motion->done;
+    self->origin = motion->run - (motion->done - motion->extra);
     self->swept = phase->from;
     self->behind = motion->way - (motion->turns ? 0.0 : phase->to);
     if (!aisle_moving_piece(self, self->piece, &self->curve)) {
@@ -410,7 +411,8 @@ void aisle_verify_moving_start(aisle_verify_moving *self, const aisle_moving_req
     AISLE_ASSERT(vehicle != NULL && request->movers != NULL && request->bytes != NULL);
     AISLE_ASSERT(n >= 1U && n <= AISLE_PATH_MAX_WAYPOINTS && request->at_u >= 0.0 && request->at_u <= 1.0);
     AISLE_ASSERT(n == 1U ? request->at_piece == 0U : request->at_piece >= 1U && request->at_piece < n);
-    AISLE_ASSERT(request->v >= 0.0 && request->v <= 1e3 && request->rest >= 0.0);
+    AISLE_ASSERT(request->v >= 0.0 && request->v <= 1e3 && request->omega >= 0.0 && request->omega <= 1e3);
+    AISLE_ASSERT(request->rest >= 0.0);
     AISLE_ASSERT(request->lease >= 0.0 && request->lease <= LEASE_MAX);
     memset(self, 0, sizeof *self);
     self->request = *request;

@@ -26,6 +26,7 @@
 // dwell taken off) between resting ones. A turn is the fastest trapezoid that omega_max and alpha_max let it; what is left
 // of its time, and of that of a piece that begins at rest, is rest before it. A turn of at most 5e-7 rad is a wait. Time that
 // moving pieces have beyond their speeds' (verify.h allows 1.1 ms each and 0.1 %) makes all that is behind them late.
+// A turn that is faster than by the path (a path made anew in it begins it at rest) is one that began earlier.
 // A real speed above the path's is braked down to it with d_max first (at rest where the path is, at the latest). One below it by more than a_max * AISLE_DRIVE_LAG is
 // proved twice: as if it were the path's, and catching up with a_max.
 // Rest before the vehicle goes on from its place: `rest` of the request, and what is left of a wait it is in. A dwell that is
@@ -50,9 +51,10 @@ typedef struct aisle_moving_request {
     size_t size;
     const aisle_path_msg *path; // decoded from these bytes
     uint32_t at_piece;          // where the vehicle is: index of the piece's later waypoint, [1, n-1] (n = 1: 0),
-    double at_u; // and the part of it behind, [0, 1]; of the turn in a turn on the spot, of the time in a wait
-    double v;    // m/s >= 0, how fast it is
-    double rest; // s >= 0, left of a dwell, before it goes on
+    double at_u;  // and the part of it behind, [0, 1]; of the turn in a turn on the spot, of the time in a wait
+    double v;     // m/s >= 0, how fast it is
+    double omega; // rad/s >= 0, how fast it turns; counts where it is in a turn on the spot
+    double rest;  // s >= 0, left of a dwell, before it goes on
     const aisle_goal_msg *goals; // [num_goals], those of the path in order, for their dwell and tolerance
     uint32_t num_goals;
     int64_t now_us;
@@ -69,6 +71,7 @@ typedef struct aisle_moving_motion { // along the path; verify_moving_motion.c
     double done;                     // m, rad in a turn, of it behind
     aisle_verify_speeds speeds;      // of it
     bool turns;                      // on the spot
+    double extra;                    // rad, of the first piece: done and the length of its speeds are so much more
     double rest;                     // s, before it goes on
     double clock;                    // s from now
     double late;                     // s that it may be later

@@ -88,6 +88,17 @@ static bool take_times(aisle_verify_moving *self, uint32_t i, aisle_verify_piece
     return true;
 }
 
+// A turn that is faster than told began earlier, by so much that it is as fast here.
+static void take_rate(aisle_verify_moving *self) {
+    aisle_moving_motion *motion = &self->motion;
+    const double rate = self->request.omega;
+    if (motion->turns && motion->speeds.length > 0.0) {
+        motion->extra = aisle_max(0.5 * rate * rate / motion->speeds.up - motion->done, 0.0);
+        motion->speeds.length += motion->extra;
+        motion->done += motion->extra;
+    }
+}
+
 static bool take(aisle_verify_moving *self, uint32_t i, bool is_first) {
     aisle_moving_motion *motion = &self->motion;
     aisle_verify_piece piece;
@@ -95,7 +106,7 @@ static bool take(aisle_verify_moving *self, uint32_t i, bool is_first) {
         return false;
     }
     motion->piece = i;
-    motion->done = 0.0;
+    motion->done = motion->extra = 0.0;
     motion->goals += !is_first && is_goal(self, i - 1U) ? 1U : 0U;
     return take_times(self, i, &piece, is_first);
 }
@@ -111,15 +122,16 @@ static void count_goals(aisle_verify_moving *self) {
 // Which speed counts: the path's, or in the second pass or where it is more the real one. What rests sets out from rest.
 static void take_speed(aisle_verify_moving *self) {
     aisle_moving_motion *motion = &self->motion;
-    const double told = aisle_verify_speed_square(&motion->speeds, motion->done), v = self->request.v, real = v * v;
+    const double told = aisle_verify_speed_square(&motion->speeds, motion->done);
+    const double v = motion->turns ? self->request.omega : self->request.v, real = v * v;
     motion->square = told;
     if (motion->rest > 0.0) {
         motion->square = 0.0;
         motion->pull = 1;
-    } else if (!motion->turns) { // how fast it turns is not known
+    } else {
         motion->square = self->is_second_pass || real > told ? real : told;
         motion->pull = real > told ? -1 : (self->is_second_pass ? 1 : 0);
-        self->has_second_pass = sqrt(told) - v > self->request.vehicle->a_max * AISLE_DRIVE_LAG;
+        self->has_second_pass = !motion->turns && sqrt(told) - v > self->request.vehicle->a_max * AISLE_DRIVE_LAG;
     }
 }
 
@@ -132,6 +144,7 @@ bool aisle_moving_motion_begin(aisle_verify_moving *self) {
         return false;
     }
     motion->done = self->request.at_u * motion->speeds.length;
+    take_rate(self);
     motion->run = motion->done;
     motion->rest += self->request.rest;
     motion->leaves_rest = true;

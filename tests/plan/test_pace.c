@@ -421,11 +421,16 @@ static void test_a_turn_that_is_stopped_ends_within_the_turn(void) {
     (void)add(0.0, 0.0, 3.0);
     (void)add(-1.0, 0.0, 3.0);
     fill_way();
+    set_flag(&path[1],
+             AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_GOAL); // which it is not to be told to be at, half way there
+    path[1].goal_id = 7;
     aisle_pace_request request = request_at((aisle_place){1, 0.5}, 0.0); // 1 rad/s
     request.first = AISLE_PACE_STOP;
     TEST_ASSERT_EQUAL_INT(AISLE_PARTIAL, run(&request, &out));
     TEST_ASSERT_EQUAL_INT(2, out.num_waypoints);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.5 + 0.1 + 0.5, out.waypoints[1].theta);
+    TEST_ASSERT_EQUAL_INT16(0, out.waypoints[1].flags & AISLE_WAYPOINT_GOAL);
+    TEST_ASSERT_EQUAL_INT32(0, out.waypoints[1].goal_id);
     prove(&out, NULL, 0.0);
 }
 

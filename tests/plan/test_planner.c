@@ -1338,6 +1338,15 @@ static void test_poses_out_of_order_or_range_are_refused(void) {
         TEST_ASSERT_EQUAL(AISLE_ERR_DATA, door_submit(AISLE_INPUT_POSE, &bad));
         TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_MALFORMED, status_now().cause);
     }
+    aisle_pose_msg bad = door_pose(2.0, 4.0, 0.0);
+    float *rate[3] = {&bad.vx, &bad.vy, &bad.omega};
+    for (int i = 0; i < 3; i++) {
+        bad.utime += 10;
+        *rate[i] = -1e30F;
+        TEST_ASSERT_EQUAL(AISLE_ERR_DATA, door_submit(AISLE_INPUT_POSE, &bad));
+        TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_MALFORMED, status_now().cause);
+        *rate[i] = 0.0F;
+    }
 }
 
 static void test_status_tells_ages_and_identity_at_the_time_asked(void) {

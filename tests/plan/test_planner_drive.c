@@ -250,8 +250,6 @@ static void test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once(
     TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 900) > 100); // 5 s and more, for what was left of the dwell
 }
 
-// ---- stops and what follows them
-
 static void command(int8_t what, int32_t arg) {
     static int32_t id;
     const aisle_command_msg msg = {.utime = door_now, .command_id = ++id, .command = what, .arg = arg};
@@ -259,6 +257,30 @@ static void command(int8_t what, int32_t arg) {
     door_settle();
     take_path();
 }
+
+// A vehicle that rolls or turns without a path brakes, where no proof sees it.
+static void test_nothing_is_sent_to_one_that_has_no_path_and_moves_until_it_rests(void) {
+    for (int turns = 0; turns < 2; turns++) {
+        open_hall(2.0, 5.0, 0.0);
+        for (int i = 0; i < 20; i++) {
+            door_now += TICK_US;
+            here.utime = door_now;
+            here.seq++;
+            here.vx = turns != 0 ? 0.0F : 0.3F;
+            here.omega = turns != 0 ? 0.7F : 0.0F;
+            TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+            door_settle();
+            if (i == 2) {
+                go(1, 18.0, 5.0);
+            }
+            take_path();
+            TEST_ASSERT_FALSE(agv.drives);
+        }
+        TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
+    }
+}
+
+// ---- stops and what follows them
 
 // The newest path brakes within what d_max and the reaction time allow, along the one before.
 static void is_braking(int16_t cause) {
@@ -515,6 +537,7 @@ int main(void) {
     RUN_TEST(test_a_way_round_that_is_none_is_looked_for_ever_more_rarely);
     RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
     RUN_TEST(test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once);
+    RUN_TEST(test_nothing_is_sent_to_one_that_has_no_path_and_moves_until_it_rests);
     RUN_TEST(test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one);
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
     RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);

@@ -616,6 +616,38 @@ static void test_a_turn_needs_room_for_its_corners(void) {
     assert_proved();
 }
 
+// m, how near a mover of 1 m/s may stand ahead of a turn that has begun, by the path at rest, for 0.2 s of lease.
+static double nearest_beside_turn(double omega) {
+    double near = 0.0, far = 10.0;
+    while (far - near > 1e-4) {
+        const double half = 0.5 * (near + far);
+        path_begin(0.0, 0.0, 0.0);
+        path_turn(2.5);
+        path_line(1.0);
+        drive(0.0);
+        ask(0.2);
+        asked.omega = omega;
+        movers.count = 0;
+        (void)add_mover(half, 0.0, 0.2, 1.0);
+        if (prove() == AISLE_OK) {
+            far = half;
+        } else {
+            near = half;
+        }
+    }
+    return far;
+}
+
+// A path that is made anew in a turn begins it at rest; the vehicle does not.
+static void test_a_turn_that_is_faster_than_its_path_says_takes_as_long_to_brake(void) {
+    const double rest = nearest_beside_turn(0.0), fast = nearest_beside_turn(0.9);
+    const double gain = vehicle.alpha_max * (0.2 + vehicle.reaction_time); // until it begins to brake at the latest
+    const double more = fmin(vehicle.omega_max, 0.9 + gain) - fmin(vehicle.omega_max, gain);
+    const double longer = more / vehicle.alpha_max; // s, in which the mover comes as many metres nearer
+    TEST_ASSERT_TRUE(longer > 0.3);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, rest + longer, fast);
+}
+
 static void test_half_a_turn_is_proved_both_ways_round(void) {
     for (int i = 0; i < 2; i++) {
         path_begin(0.0, 0.0, 0.0);
@@ -1181,6 +1213,7 @@ int main(int argc, char **argv) {
     RUN_TEST(test_a_real_speed_below_the_path_s_is_later);
     RUN_TEST(test_a_wait_ahead_is_waited);
     RUN_TEST(test_a_turn_needs_room_for_its_corners);
+    RUN_TEST(test_a_turn_that_is_faster_than_its_path_says_takes_as_long_to_brake);
     RUN_TEST(test_half_a_turn_is_proved_both_ways_round);
     RUN_TEST(test_backwards_it_is_the_rear_that_counts);
     RUN_TEST(test_the_dwell_at_its_place_is_what_the_request_says);
