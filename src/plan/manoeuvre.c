@@ -2,10 +2,8 @@
 
 #include "base/angle.h"
 #include "plan/manoeuvre_parts.h"
+#include "plan/vehicle_space.h"
 
-#define CUSP 1.0         // m, cost of a change between forwards and backwards
-#define TURN_START 0.3   // m, of a turn on the spot
-#define TURN_RATE 0.3    // m a rad, and of each rad of it
 #define CELLS_A_NODE 64U // of the planning grid, by which the nodes are counted
 #define NODES_MIN 1024U
 
@@ -24,6 +22,9 @@ void aisle_manoeuvre_carve(aisle_manoeuvre *self, aisle_arena *arena, const aisl
     self->slot = (aisle_manoeuvre_slot *)aisle_arena_take(arena, self->slot_capacity, sizeof(aisle_manoeuvre_slot));
     self->target =
         (aisle_manoeuvre_target *)aisle_arena_take(arena, AISLE_MANOEUVRE_TARGETS, sizeof(aisle_manoeuvre_target));
+}
+
+void aisle_manoeuvre_carve_way(aisle_manoeuvre *self, aisle_arena *arena) {
     self->move = (aisle_move *)aisle_arena_take(arena, AISLE_MANOEUVRE_CHAIN, sizeof(aisle_move));
     self->junction = (aisle_pose2 *)aisle_arena_take(arena, AISLE_MANOEUVRE_CHAIN + 1U, sizeof(aisle_pose2));
 }
@@ -43,23 +44,28 @@ static const struct attempt {
 #define STEP_CELLS 1.5    // length of a step
 #define TRAPPED_MOST 300U // nodes expanded where the tree ended by itself: a finer one may come out
 
-void aisle_manoeuvre_start(aisle_manoeuvre *self, const aisle_manoeuvre_request *request) {
+static void begin(aisle_manoeuvre *self, const aisle_manoeuvre_request *request) {
     const aisle_vehicle *vehicle = request->space->vehicle;
     self->request = *request;
-    // Not the tightest arc: the verifier reads the curvature as a float.
-    double radius = vehicle->curvature_max > 0.0 ? (1.0 + 1e-6) / vehicle->curvature_max : 0.0;
-    self->rule = (aisle_steer_rule){.radius_min = radius,
-                                    .reverse = AISLE_MANOEUVRE_REVERSE,
-                                    .cusp = CUSP,
-                                    .turn_start = TURN_START,
-                                    .turn_rate = TURN_RATE};
+    self->rule = aisle_vehicle_space_rule(vehicle);
     self->need = vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
     self->moves = 0;
     self->spent = self->units = 0;
     self->side = 1.0;
+}
+
+void aisle_manoeuvre_start(aisle_manoeuvre *self, const aisle_manoeuvre_request *request) {
+    begin(self, request);
     aisle_togo_start(&self->togo, request->space->grid, request->reach, aisle_pose_place(request->start),
                      aisle_pose_place(request->goal));
     self->phase = AISLE_MANOEUVRE_FIELD;
+}
+
+void aisle_manoeuvre_begin_way(aisle_manoeuvre *self, const aisle_manoeuvre_request *request) {
+    begin(self, request);
+    self->junction[0] = request->start;
+    self->expanded = 0;
+    self->phase = AISLE_MANOEUVRE_FOUND;
 }
 
 // ---- attempts
@@ -169,6 +175,10 @@ static void step_phase(aisle_manoeuvre *self, uint32_t units) {
         break;
     case AISLE_MANOEUVRE_SEARCH:
         search_once(self);
+        break;
+    case AISLE_MANOEUVRE_FOUND:
+        aisle_manoeuvre_begin_shorten(self);
+        self->phase = AISLE_MANOEUVRE_SHORTEN;
         break;
     default:
         if (!aisle_manoeuvre_shorten(self)) {

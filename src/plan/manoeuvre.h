@@ -14,7 +14,7 @@
 // cells with exact configurations in them find nearly all). Then the chain is shortened: from each
 // configuration on it the ways of steer.h to later ones are tried and taken where they cost less.
 // No motion is against a DIRECTED zone (zones.h); tolls are not minded.
-// Cost: metres, AISLE_MANOEUVRE_REVERSE for one backwards, and what cusps and turns add (manoeuvre.c). Not an optimum,
+// Cost: metres, more for one backwards, and what cusps and turns add (vehicle_space.h). Not an optimum,
 // and no proof where it finds none.
 // Files: manoeuvre.c (attempts, phases), manoeuvre_targets.c, manoeuvre_open.c (open list), manoeuvre_expand.c (successors),
 // manoeuvre_free.c (tests), manoeuvre_chain.c (the way found), manoeuvre_shorten.c.
@@ -30,7 +30,6 @@
 #include "robot/steer.h"
 
 #define AISLE_MANOEUVRE_WEIGHT 2.0
-#define AISLE_MANOEUVRE_REVERSE 2.0
 #define AISLE_MANOEUVRE_TARGETS 512U   // configurations that are linked to
 #define AISLE_MANOEUVRE_CHAIN 512U     // moves of a way
 #define AISLE_MANOEUVRE_NODES 65536U   // at most
@@ -75,6 +74,7 @@ typedef enum aisle_manoeuvre_phase {
     AISLE_MANOEUVRE_TARGET, // targets are made
     AISLE_MANOEUVRE_TREE,   // from the goal backwards
     AISLE_MANOEUVRE_SEARCH,
+    AISLE_MANOEUVRE_FOUND, // elsewhere
     AISLE_MANOEUVRE_SHORTEN,
     AISLE_MANOEUVRE_DONE,
     AISLE_MANOEUVRE_FAILED
@@ -113,13 +113,20 @@ typedef struct aisle_manoeuvre {
     uint32_t spent;    // in all
 } aisle_manoeuvre;
 
+// The way found lies apart from what only the search needs.
 void aisle_manoeuvre_carve(aisle_manoeuvre *self, aisle_arena *arena, const aisle_limits *limits);
+void aisle_manoeuvre_carve_way(aisle_manoeuvre *self, aisle_arena *arena);
 
 // Begins. The start and the goal, where its heading is given, are known to be free.
 void aisle_manoeuvre_start(aisle_manoeuvre *self, const aisle_manoeuvre_request *request);
 
 // AISLE_BUSY; AISLE_OK: there is a way; AISLE_PARTIAL: none was found. Spends about `units`, adds them to *spent.
 aisle_status aisle_manoeuvre_step(aisle_manoeuvre *self, uint32_t units, uint32_t *spent);
+
+// Instead of start(): a way found elsewhere, only to be shortened by step(); of `request` its space and start are read.
+// add(): moves from where it ends by now to `to`; false: there is no room.
+void aisle_manoeuvre_begin_way(aisle_manoeuvre *self, const aisle_manoeuvre_request *request);
+bool aisle_manoeuvre_add(aisle_manoeuvre *self, const aisle_move *moves, uint32_t count, aisle_pose2 to);
 
 // After AISLE_OK: the way's waypoints as aisle_move_lay() makes them, the start first: w[capacity]; how many, 0: they do
 // not fit.

@@ -73,6 +73,19 @@ bool aisle_manoeuvre_take_chain(aisle_manoeuvre *self, uint32_t n) {
     return true;
 }
 
+bool aisle_manoeuvre_add(aisle_manoeuvre *self, const aisle_move *moves, uint32_t count, aisle_pose2 to) {
+    if (self->moves + count > AISLE_MANOEUVRE_CHAIN) {
+        return false;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        aisle_pose2 p = aisle_move_end(self->junction[self->moves], moves[i]);
+        p.theta = aisle_angle_wrap(p.theta);
+        self->move[self->moves++] = moves[i];
+        self->junction[self->moves] = i + 1U < count ? p : to;
+    }
+    return true;
+}
+
 uint32_t aisle_manoeuvre_lay(const aisle_manoeuvre *self, aisle_waypoint_msg *w, uint32_t capacity) {
     aisle_pose2 p = self->junction[0];
     uint32_t n = 1;

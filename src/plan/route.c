@@ -19,16 +19,27 @@ typedef union part {
 
 #define PART(self, instead, name) ((self) != NULL ? &(self)->name : &(instead)->name)
 
-// No leg is searched two ways at a time: the tangent search and that of manoeuvres lie where the grid search does. Nor
+static void carve_sample(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+    const uint32_t share = limits->cells / AISLE_ROUTE_SAMPLE_CELLS;
+    const uint32_t nodes = share > AISLE_ROUTE_SAMPLE_NODES ? AISLE_ROUTE_SAMPLE_NODES : share;
+    aisle_rrt_carve(self != NULL ? &self->sample.tree : NULL, arena, nodes, AISLE_ROUTE_SAMPLE_DIM);
+    void *path = aisle_arena_take(arena, (size_t)nodes + 1U, sizeof(uint32_t));
+    if (self != NULL) {
+        self->sample.path = (uint32_t *)path;
+    }
+}
+
+// No leg is searched two ways at a time: the other searches lie where the grid search does. Nor
 // is anything searched while an order is computed.
 static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_arena shared[4] = {*arena, *arena, *arena, *arena};
+    aisle_arena shared[5] = {*arena, *arena, *arena, *arena, *arena};
     aisle_tangent_carve(PART(self, instead, tangent), &shared[0], limits);
     aisle_manoeuvre_carve(PART(self, instead, manoeuvre), &shared[1], limits);
     aisle_tour_carve_shared(PART(self, instead, tour), &shared[2]);
     aisle_local_carve(PART(self, instead, local), &shared[3], limits->cells);
+    carve_sample(self, &shared[4], limits);
     aisle_seed_carve(PART(self, instead, seed), arena, limits);
-    for (uint32_t i = 0; i < 4U; i++) {
+    for (uint32_t i = 0; i < 5U; i++) {
         arena->overflow = arena->overflow || shared[i].overflow;
         arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
     }
@@ -66,6 +77,7 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
     part *instead = &measured;
     aisle_space_carve(PART(self, instead, space), arena, limits->cells);
     carve_searches(self, instead, arena, limits);
+    aisle_manoeuvre_carve_way(PART(self, instead, manoeuvre), arena);
     aisle_tour_carve(PART(self, instead, tour), arena);
     aisle_swarm_carve(PART(self, instead, swarm), arena);
     aisle_paper_swarm_carve(PART(self, instead, paper), arena);
@@ -171,6 +183,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_paper(self, units);
     case AISLE_ROUTE_LOCAL:
         return aisle_route_step_local(self, units);
+    case AISLE_ROUTE_SAMPLE:
+        return aisle_route_step_sample(self, units);
     case AISLE_ROUTE_ONE_WAY:
         return aisle_route_step_one_way(self, units);
     case AISLE_ROUTE_WHY:

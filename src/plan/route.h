@@ -23,6 +23,11 @@
 // Planner by name: ASTAR leaves the swarm out; PSO is the objective's GRID way alone and takes the swarm's path wherever
 // it is proved; PSO with objective PAPER is the paper's own swarm (PAPER) alone, its path or a refusal (BUDGET: it found
 // none, which proves nothing).
+// RRT, RRT_ADAPTIVE, RRT_STAR, RRT_STAR_ADAPTIVE: per leg SAMPLE (rrt.h) in place of all searches, then TAUT where heading
+// does not matter, else the moves shortened; objective PAPER: the paper's plain form. With half of the budget for all legs'
+// trees; a star that this ends before its samples is flagged by cause BUDGET beside the path. No way: WHY, for a proof, else
+// BUDGET. AUTO asks RRT_ADAPTIVE in the place of a KINEMATIC or BUDGET refusal by WHY: where nothing else found a way and none
+// was proved away.
 // PSO_LOCAL is the local swarm's way alone (local.h), with movers if aisle_route_go_round() gave some; its failure proves
 // nothing (BLOCKED_BY the mover nearest to where it got to, else BUDGET).
 // Zones (zones.h): tangent ways must obey DIRECTED ones, else the leg is the grid's; PENALTY zones add what they cost to
@@ -46,6 +51,7 @@
 #ifndef AISLE_PLAN_ROUTE_H
 #define AISLE_PLAN_ROUTE_H
 
+#include "algo/rrt.h"
 #include "plan/cache.h"
 #include "plan/compose.h"
 #include "plan/leg.h"
@@ -60,12 +66,16 @@
 #include "plan/tangent.h"
 #include "plan/taut.h"
 #include "plan/tour.h"
+#include "plan/vehicle_space.h"
 #include "plan/verify.h"
 #include "plan/why.h"
 #include "wire/codec.h"
 
-#define AISLE_ROUTE_POINTS 2048U // of all legs' seed polylines
-#define AISLE_ROUTE_PIECES 768U  // waypoints of all legs' manoeuvres
+#define AISLE_ROUTE_POINTS 2048U        // of all legs' seed polylines
+#define AISLE_ROUTE_PIECES 768U         // waypoints of all legs' manoeuvres
+#define AISLE_ROUTE_SAMPLE_NODES 32768U // of a tree, at most,
+#define AISLE_ROUTE_SAMPLE_CELLS 64U    // and of the planning grid by which they are counted
+#define AISLE_ROUTE_SAMPLE_DIM 3U
 #define AISLE_ROUTE_NONE UINT32_MAX
 #define AISLE_ROUTE_STRIDE 0.1                                  // m
 #define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
@@ -101,7 +111,8 @@ typedef enum aisle_way_kind {
     AISLE_WAY_GRID,   // by the grid's search
     AISLE_WAY_PAPER,  // by the paper's own swarm
     AISLE_WAY_REPAIR, // of the free pieces of a remembered answer
-    AISLE_WAY_LOCAL   // by the local swarm
+    AISLE_WAY_LOCAL,  // by the local swarm
+    AISLE_WAY_SAMPLE  // by the sampling planner that is named
 } aisle_way_kind;
 
 typedef struct aisle_way {
@@ -126,6 +137,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_SWARM,
     AISLE_ROUTE_PAPER,
     AISLE_ROUTE_LOCAL,
+    AISLE_ROUTE_SAMPLE,
     AISLE_ROUTE_ONE_WAY, // do zones shut every way?
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_NEXT, // the way under way is done with
@@ -155,6 +167,22 @@ typedef struct aisle_route_repair { // of the answer in `decoded`
     bool is_done;                // it is the answer
 } aisle_route_repair;
 
+typedef enum aisle_route_sample_phase {
+    AISLE_ROUTE_SAMPLE_TREE,   // grows
+    AISLE_ROUTE_SAMPLE_PULL,   // places on its path that are seen from earlier ones are left out
+    AISLE_ROUTE_SAMPLE_SHORTEN // the same of moves
+} aisle_route_sample_phase;
+
+typedef struct aisle_route_sample { // a leg's search by sampling
+    aisle_rrt tree;
+    aisle_vehicle_space configurations;
+    aisle_route_sample_phase phase;
+    uint32_t *path; // [capacity of the tree + 1] nodes
+    uint32_t path_count, at;
+    uint32_t limit; // of the request's units, that this leg's search ends at
+    bool is_spare;  // tried because nothing else found a way: the reason for that is told if this finds none, too
+} aisle_route_sample;
+
 typedef struct aisle_route {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
@@ -183,6 +211,7 @@ typedef struct aisle_route {
     aisle_swarm swarm;
     aisle_paper_swarm paper;
     aisle_local local;
+    aisle_route_sample sample;
     const aisle_movers *movers; // to go round, or NULL; the vehicle is at the start
     int64_t movers_us;          // then,
     bool in_motion;             // and does not stop there

@@ -1,11 +1,12 @@
 #include "plan/route_stages.h"
 
-static bool options_are_known(const aisle_options_msg *options) {
+static bool options_are_known(const aisle_options_msg *options, bool is_sampling) {
     bool planner = options->planner == AISLE_OPTIONS_AUTO || options->planner == AISLE_OPTIONS_PSO ||
-                   options->planner == AISLE_OPTIONS_ASTAR || options->planner == AISLE_OPTIONS_PSO_LOCAL;
+                   options->planner == AISLE_OPTIONS_ASTAR || options->planner == AISLE_OPTIONS_PSO_LOCAL ||
+                   is_sampling;
     bool interpolation =
         options->interpolation == AISLE_OPTIONS_SPLINE || options->interpolation == AISLE_OPTIONS_LINEAR;
-    bool is_paper = options->objective == AISLE_OPTIONS_PAPER && options->planner == AISLE_OPTIONS_PSO;
+    bool is_paper = options->objective == AISLE_OPTIONS_PAPER && (options->planner == AISLE_OPTIONS_PSO || is_sampling);
     bool objective =
         is_paper || (options->objective >= AISLE_OPTIONS_SAFEST && options->objective <= AISLE_OPTIONS_LEAST_ENERGY);
     return planner && objective && interpolation && options->risk_weight >= 0.0F && options->work_units >= 0 &&
@@ -61,7 +62,7 @@ static aisle_status check_stop(aisle_route *self, const aisle_goal_msg *stop) {
 
 aisle_status aisle_route_check(aisle_route *self) {
     const aisle_request *request = &self->request;
-    if (!options_are_known(&request->options)) {
+    if (!options_are_known(&request->options, aisle_route_is_sampling(self))) {
         return aisle_route_refuse(self, AISLE_STATUS_MALFORMED, request->options.planner,
                                   (double)request->options.objective);
     }

@@ -24,6 +24,19 @@ static bool any_swarm_leg(const aisle_route *self) {
     return false;
 }
 
+// The planner that is told: of a way, the one that found it; AUTO's sampler has a name, too.
+static int8_t planner_of(const aisle_route *self) {
+    if (self->way->kind == AISLE_WAY_LOCAL) {
+        return AISLE_OPTIONS_PSO_LOCAL;
+    }
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        if (self->legs[i].is_sampled) {
+            return aisle_route_is_sampling(self) ? self->request.options.planner : AISLE_OPTIONS_RRT_ADAPTIVE;
+        }
+    }
+    return any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
+}
+
 static double length_bound(const aisle_route *self) {
     double sum = 0.0;
     for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
@@ -34,8 +47,7 @@ static double length_bound(const aisle_route *self) {
 
 static void seal(aisle_route *self) {
     aisle_path_msg *path = self->path;
-    const bool is_local = self->way->kind == AISLE_WAY_LOCAL;
-    path->planner = is_local ? AISLE_OPTIONS_PSO_LOCAL : any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
+    path->planner = planner_of(self);
     path->work_units = (int32_t)self->spent;
     path->cause = self->is_cut ? AISLE_STATUS_BUDGET : 0;
     path->cause_value = self->is_cut ? (float)self->budget : 0.0F;
@@ -72,7 +84,7 @@ static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisl
     if (self->way->kind == AISLE_WAY_PAPER) { // the paper's way or none
         return aisle_route_give_way_up(self, cause, id, 0.0, place);
     }
-    bool tight = self->way->kind != AISLE_WAY_GRID && !self->is_wide && !aisle_vehicle_is_disc(self->vehicle);
+    bool tight = self->way->kind <= AISLE_WAY_CLEAR && !self->is_wide && !aisle_vehicle_is_disc(self->vehicle);
     if (any_swarm_leg(self)) { // the way without it was proved before
         return aisle_route_next_way(self);
     }
@@ -126,7 +138,8 @@ static void begin_swarm_leg(aisle_route *self);
 
 // Is there nothing on this way that a swarm could improve?
 static bool is_settled(const aisle_route *self) {
-    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->way->kind == AISLE_WAY_LOCAL || self->stops) {
+    if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->way->kind == AISLE_WAY_LOCAL ||
+        self->way->kind == AISLE_WAY_SAMPLE || self->stops) {
         return true;
     }
     if (self->request.options.planner == AISLE_OPTIONS_PSO) {

@@ -121,6 +121,8 @@ void aisle_route_next_leg(aisle_route *self) {
     self->leg++;
     if (self->leg < (uint32_t)self->request.num_goals && self->way->kind == AISLE_WAY_REPAIR) {
         aisle_route_begin_repair_leg(self);
+    } else if (self->leg < (uint32_t)self->request.num_goals && self->way->kind == AISLE_WAY_SAMPLE) {
+        aisle_route_begin_sample_leg(self);
     } else if (self->leg < (uint32_t)self->request.num_goals) {
         begin_leg(self);
     } else {

@@ -30,6 +30,11 @@ static const aisle_way repaired[] = {{AISLE_WAY_REPAIR, AISLE_OPTIONS_SAFEST},
                                      {AISLE_WAY_REPAIR, AISLE_OPTIONS_SHORTEST},
                                      {AISLE_WAY_REPAIR, AISLE_OPTIONS_FASTEST},
                                      {AISLE_WAY_REPAIR, AISLE_OPTIONS_LEAST_ENERGY}};
+static const aisle_way sampled[] = {{AISLE_WAY_SAMPLE, AISLE_OPTIONS_SAFEST},
+                                    {AISLE_WAY_SAMPLE, AISLE_OPTIONS_SHORTEST},
+                                    {AISLE_WAY_SAMPLE, AISLE_OPTIONS_FASTEST},
+                                    {AISLE_WAY_SAMPLE, AISLE_OPTIONS_LEAST_ENERGY},
+                                    {AISLE_WAY_SAMPLE, AISLE_OPTIONS_SHORTEST}}; // PAPER
 static const aisle_way by_grid[] = {{AISLE_WAY_GRID, AISLE_OPTIONS_SAFEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_SHORTEST},
                                     {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
@@ -44,6 +49,9 @@ static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
     }
     if (self->request.options.planner == AISLE_OPTIONS_PSO_LOCAL) {
         return n == 0U ? &local : NULL;
+    }
+    if (aisle_route_is_sampling(self)) {
+        return n == 0U ? &sampled[wish] : NULL;
     }
     bool tolls = aisle_zones_any_toll(self->layout, wish);
     switch (wish) {
@@ -82,6 +90,8 @@ static void begin_way(aisle_route *self) {
         aisle_route_begin_repair_leg(self);
     } else if (self->way->kind == AISLE_WAY_LOCAL) {
         aisle_route_begin_local(self);
+    } else if (self->way->kind == AISLE_WAY_SAMPLE) {
+        aisle_route_begin_sample(self);
     } else {
         aisle_route_begin_legs(self);
     }

@@ -109,7 +109,7 @@ static aisle_status end_why(aisle_route *self) {
         (void)aisle_route_refuse_at(self, cause, why->gap.id[0], why->gap.width, why->gap.place);
     }
     aisle_route_name_goal(self, goal);
-    return AISLE_OK;
+    return aisle_route_begin_spare(self) ? AISLE_BUSY : AISLE_OK;
 }
 
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units) {

@@ -249,7 +249,7 @@ static bool sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, aisl
     sweep way = {a, b, {1.0, 0.0}, aisle_vec2_length(way_to), 0.0};
     if (way.length > 1e-9) {
         way.heading = aisle_vec2_scale(way_to, 1.0 / way.length);
-        way.theta = aisle_atan2(way_to.y, way_to.x);
+        way.theta = mode == AISLE_SPACE_ALONG ? aisle_atan2(way_to.y, way_to.x) : 0.0;
     }
     if (!aisle_zones_allow(self->layout, a, b, self->zone_room, NULL)) {
         return false;
@@ -464,6 +464,35 @@ bool aisle_space_piece_free(const aisle_space *self, const aisle_waypoint_msg *f
             return false;
         }
         ends[depth++] = middle;
+    }
+    return true;
+}
+
+// Is it against no DIRECTED zone?
+static bool obeys(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                  bool backwards) {
+    if (!backwards || !aisle_zones_any_directed(self->layout)) {
+        return aisle_zones_allow_piece(self->layout, from, to, NULL);
+    }
+    aisle_waypoint_msg last = *from;
+    last.curvature = -to->curvature;
+    return aisle_zones_allow_piece(self->layout, to, &last, NULL);
+}
+
+bool aisle_space_moves_free(const aisle_space *self, aisle_pose2 from, const aisle_move *moves, uint32_t count,
+                            double need, bool backwards, uint32_t *units) {
+    aisle_waypoint_msg w[AISLE_MOVE_WAYPOINTS + 1U];
+    w[0] = (aisle_waypoint_msg){.x = from.x, .y = from.y, .theta = from.theta};
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t n = aisle_move_lay(moves[i], w);
+        for (uint32_t k = 1; k <= n; k++) {
+            if (!aisle_space_piece_free(self, &w[k - 1U], &w[k], need, units) ||
+                !obeys(self, &w[k - 1U], &w[k], backwards)) {
+                return false;
+            }
+        }
+        w[0] = w[n];
+        w[0].flags = 0;
     }
     return true;
 }

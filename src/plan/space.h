@@ -11,6 +11,7 @@
 #define AISLE_PLAN_SPACE_H
 
 #include "base/arena.h"
+#include "robot/move.h"
 #include "robot/vehicle.h"
 #include "world/layout.h"
 
@@ -111,4 +112,9 @@ double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint
 // pieces, 5 mm where a polygon turns. Ends with the first placement that is too near. Units as above.
 bool aisle_space_piece_free(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
                             double need, uint32_t *units);
+
+// The same all along these moves from a configuration on, one after the other, and against no DIRECTED zone. backwards in
+// time: they are driven the other way round, from their end to `from`.
+bool aisle_space_moves_free(const aisle_space *self, aisle_pose2 from, const aisle_move *moves, uint32_t count,
+                            double need, bool backwards, uint32_t *units);
 #endif

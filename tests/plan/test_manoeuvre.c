@@ -29,6 +29,7 @@ static void open_hall(void) {
     memset(&manoeuvre, 0, sizeof manoeuvre);
     aisle_space_carve(&space, &arena, hall_limits.cells);
     aisle_manoeuvre_carve(&manoeuvre, &arena, &hall_limits);
+    aisle_manoeuvre_carve_way(&manoeuvre, &arena);
     hall_open(&arena, 0.05F);
     aisle_space_begin(&space, &hall_layout, &hall_vehicle, AISLE_SPACE_ALONG);
 }
