@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-
 namespace ob = ompl::base;
 
 struct Point {
@@ -113,7 +112,8 @@ struct Leg {
 // x_min y_min x_max y_max  radius  x0 y0 x1 y1
 inline Leg read_leg() {
     Leg t{};
-    std::cin >> t.box[0] >> t.box[1] >> t.box[2] >> t.box[3] >> radius >> t.start.x >> t.start.y >> t.goal.x >> t.goal.y;
+    std::cin >> t.box[0] >> t.box[1] >> t.box[2] >> t.box[3] >> radius >> t.start.x >> t.start.y >> t.goal.x >>
+        t.goal.y;
     return t;
 }
 
