@@ -31,7 +31,7 @@ static double draw_between(aisle_rng *rng, double lo, double hi) {
     return lo + (hi - lo) * (double)aisle_rng_float(rng);
 }
 
-static void draw(void *context, aisle_rng *rng, double *q) {
+static void draw_anywhere(void *context, aisle_rng *rng, double *q) {
     const aisle_cspace *space = &((const aisle_vehicle_space *)context)->cspace;
     for (uint32_t d = 0; d < space->dim; d++) {
         q[d] = draw_between(rng, space->lo[d], space->hi[d]);
@@ -51,7 +51,7 @@ static void draw_in_ellipse(void *context, aisle_rng *rng, const double *a, cons
         apart > TINY ? aisle_vec2_scale(aisle_vec2_sub(to, from), 1.0 / apart) : aisle_vec2_of(1.0, 0.0);
     const double half_long = 0.5 * aisle_max(most, apart);
     const double half_wide = sqrt(aisle_max(half_long * half_long - 0.25 * apart * apart, 0.0));
-    draw(context, rng, q);
+    draw_anywhere(context, rng, q);
     for (uint32_t i = 0; i < TRIES; i++) {
         const double u = draw_between(rng, -1.0, 1.0), v = draw_between(rng, -1.0, 1.0);
         const aisle_vec2 off = {u * half_long * along.x - v * half_wide * along.y,
@@ -198,7 +198,7 @@ void aisle_vehicle_space_begin(aisle_vehicle_space *self, const aisle_space *spa
                                   .weight = {1.0, 1.0, AISLE_VEHICLE_SPACE_TURN},
                                   .period = {0.0, 0.0, 2.0 * AISLE_PI},
                                   .context = self,
-                                  .sample = draw,
+                                  .sample = draw_anywhere,
                                   .sample_between = draw_in_ellipse,
                                   .cost = is_pose ? cost_between : NULL,
                                   .bound = is_pose ? length_between : NULL,
