@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#define RATE_MAX 100.0 // m/s, rad/s, of a pose; a faster vehicle is none
+
 aisle_status aisle_planner_reject(aisle_planner *self, int16_t cause, int32_t id) {
     self->counters[AISLE_COUNTER_REJECTED]++;
     self->cause = cause;
@@ -124,8 +126,6 @@ static aisle_status take_vehicle(aisle_planner *self, const aisle_vehicle_msg *m
 }
 
 // ---- pose
-
-#define RATE_MAX 100.0 // m/s, rad/s; a faster vehicle is none
 
 static void note_progress(aisle_planner *self) {
     const bool is_known = aisle_planner_pose_hindrance(self).cause == 0;

@@ -76,6 +76,7 @@
 #define AISLE_ROUTE_SAMPLE_NODES 32768U // of a tree, at most,
 #define AISLE_ROUTE_SAMPLE_CELLS 64U    // and of the planning grid by which they are counted
 #define AISLE_ROUTE_SAMPLE_DIM 3U
+#define AISLE_ROUTE_ROUND_UNITS 60000U // work units of a way round; who finds none by then waits
 #define AISLE_ROUTE_NONE UINT32_MAX
 #define AISLE_ROUTE_STRIDE 0.1                                  // m
 #define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
@@ -262,7 +263,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
                        const aisle_request *request, const aisle_path_msg *head);
 
 // After start(): the way is to be the local swarm's, round the movers. from_us: when the vehicle is at the start; in_motion: it
-// does not stop there, so that its way begins straight ahead. It has 60,000 work units at most, some 10 ms here.
+// does not stop there, so that its way begins straight ahead. It has AISLE_ROUTE_ROUND_UNITS at most.
 void aisle_route_go_round(aisle_route *self, const aisle_movers *movers, int64_t from_us, bool in_motion);
 
 // Spends about `units`. AISLE_BUSY; AISLE_PARTIAL: there is an answer already, and what may better it takes long (told

@@ -10,7 +10,6 @@
 #define TINY 1e-3        // m
 #define SPEED_LEAST 0.01 // m/s
 #define BEND_MAX 1.3     // rad, by which a way may leave its heading without a stop
-#define BUDGET 60000U    // work units of a way round at most; who finds none by then waits
 
 // m, kept off movers beside the margin: what a person can do before a vehicle at creep speed rests, with ease and at the
 // least.
@@ -22,7 +21,7 @@ void aisle_route_go_round(aisle_route *self, const aisle_movers *movers, int64_t
     self->movers = movers;
     self->movers_us = from_us;
     self->in_motion = in_motion;
-    self->budget = self->budget < BUDGET ? self->budget : BUDGET;
+    self->budget = self->budget < AISLE_ROUTE_ROUND_UNITS ? self->budget : AISLE_ROUTE_ROUND_UNITS;
     self->stage = AISLE_ROUTE_CHECK; // what is remembered knows no movers
 }
 

@@ -54,9 +54,7 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of,
     // A point of the cell may be half a diagonal from its centre, and so may the obstacle's from its own.
     double least = aisle_max(reach_of / grid->lattice.res - 1.4143, 0.5);
     self->open_from = (uint32_t)aisle_min(least * least, (double)AISLE_FIELD_SQ_MAX);
-    self->insists = false;
-    self->share = WORTH_SHARE;
-    self->more = WORTH_MORE;
+    self->insists = self->ends_at_start = false;
     memset(self->count, 0, sizeof self->count);
     self->at = self->cells = 0;
     self->limit = AISLE_TOGO_NONE - DIAGONAL;
@@ -66,8 +64,7 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of,
 }
 
 void aisle_togo_end_at_start(aisle_togo *self) {
-    self->share = 1.0;
-    self->more = 0.0;
+    self->ends_at_start = true;
 }
 
 // Room at both ends of a diagonal step for all of it (space.h), half a diagonal for the centre's place in its planning
@@ -178,7 +175,8 @@ aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) 
         if (self->cost[cell] == self->at) {
             expand(self, cell);
             if (cell == self->start && self->limit == AISLE_TOGO_NONE - DIAGONAL) {
-                double beyond = self->share * (double)self->at + STRAIGHT * self->more / self->size;
+                double beyond = WORTH_SHARE * (double)self->at + STRAIGHT * WORTH_MORE / self->size;
+                beyond = self->ends_at_start ? (double)self->at : beyond;
                 self->limit = (uint32_t)aisle_min(beyond, (double)self->limit);
             }
         }

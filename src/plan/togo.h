@@ -25,10 +25,9 @@ typedef struct aisle_togo {
     uint32_t count[AISLE_TOGO_RING];
     uint32_t capacity, stride, w, h; // stride: planning cells along one of its own
     double size;                     // m, side of a cell
-    bool insists;                    // see below
+    bool insists, ends_at_start;     // see below
     uint32_t open_from;              // least field value of an open planning cell
     uint32_t at, limit, start, goal; // cost under way; where it ends; the cells of start and goal
-    double share, more;              // how far beyond the start's cost it goes on, as a part of it and m
     uint32_t cells;                  // looked at
 } aisle_togo;
 

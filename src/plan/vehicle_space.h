@@ -8,7 +8,8 @@
 // so that a metre backwards, a cusp and a turn are dearer. Nearest by the Euclidean distance of (x, y,
 // AISLE_VEHICLE_SPACE_TURN * theta).
 // Both keep off DIRECTED zones they are against.
-// Memory: none. Time: PLACE 0.1 us a free motion in the open, 1 us for each metre near obstacles; POSE 1 us and more.
+// Memory: none. Time: a motion is O(1) in the open, O(metres near obstacles * obstacles near) else; POSE as many times as its
+// way has moves.
 #ifndef AISLE_PLAN_VEHICLE_SPACE_H
 #define AISLE_PLAN_VEHICLE_SPACE_H
 

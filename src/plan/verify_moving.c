@@ -412,7 +412,6 @@ void aisle_verify_moving_start(aisle_verify_moving *self, const aisle_moving_req
     AISLE_ASSERT(n >= 1U && n <= AISLE_PATH_MAX_WAYPOINTS && request->at_u >= 0.0 && request->at_u <= 1.0);
     AISLE_ASSERT(n == 1U ? request->at_piece == 0U : request->at_piece >= 1U && request->at_piece < n);
     AISLE_ASSERT(request->v >= 0.0 && request->v <= 1e3 && request->omega >= 0.0 && request->omega <= 1e3);
-    AISLE_ASSERT(request->rest >= 0.0);
     AISLE_ASSERT(request->lease >= 0.0 && request->lease <= LEASE_MAX);
     memset(self, 0, sizeof *self);
     self->request = *request;

@@ -29,9 +29,9 @@
 // A turn that is faster than by the path (a path made anew in it begins it at rest) is one that began earlier.
 // A real speed above the path's is braked down to it with d_max first (at rest where the path is, at the latest). One below it by more than a_max * AISLE_DRIVE_LAG is
 // proved twice: as if it were the path's, and catching up with a_max.
-// Rest before the vehicle goes on from its place: `rest` of the request, and what is left of a wait it is in. A dwell that is
-// behind, or ahead by no more than its goal's tolerance while the vehicle stands (0.02 m/s), counts as begun: its time is not rest but
-// what `rest` says.
+// Rest before the vehicle goes on from its place: what is left of a wait it is in. A dwell that is behind, or ahead by no more
+// than its goal's tolerance while the vehicle stands (0.02 m/s), counts as begun, and one that has begun as over: a controller
+// counts its time for itself. What may be left of it is the caller's to add to `late`.
 //
 // Memory: the caller's struct, 6 KiB. Time: O(waypoints) once, O(movers), then O(intervals * movers near), sliced.
 #ifndef AISLE_PLAN_VERIFY_MOVING_H
@@ -54,7 +54,6 @@ typedef struct aisle_moving_request {
     double at_u;  // and the part of it behind, [0, 1]; of the turn in a turn on the spot, of the time in a wait
     double v;     // m/s >= 0, how fast it is
     double omega; // rad/s >= 0, how fast it turns; counts where it is in a turn on the spot
-    double rest;  // s >= 0, left of a dwell, before it goes on
     const aisle_goal_msg *goals; // [num_goals], those of the path in order, for their dwell and tolerance
     uint32_t num_goals;
     int64_t now_us;

@@ -46,7 +46,7 @@ bool aisle_moving_waits(const aisle_verify_piece *piece) {
 
 // ---- rest before a piece
 
-// Dwell (s) at waypoint i if it is a goal; *begun: the part of it that the request tells of.
+// Dwell (s) at waypoint i if it is a goal; *begun: the part of it that may be over.
 static double dwell_at(aisle_verify_moving *self, uint32_t i, double *begun) {
     aisle_moving_motion *motion = &self->motion;
     *begun = 0.0;
@@ -146,7 +146,6 @@ bool aisle_moving_motion_begin(aisle_verify_moving *self) {
     motion->done = self->request.at_u * motion->speeds.length;
     take_rate(self);
     motion->run = motion->done;
-    motion->rest += self->request.rest;
     motion->leaves_rest = true;
     take_speed(self);
     return true;

@@ -222,6 +222,35 @@ static void test_it_gains_speed_no_faster_than_it_can(void) {
     }
 }
 
+// A path that is made anew in a turn begins it at rest; told how fast the vehicle turns its places and times are those of the
+// turn that was under way.
+static void test_a_turn_made_anew_goes_on_from_the_rate_that_is_told(void) {
+    static aisle_band whole;
+    set_flag(add(0.0, 0.0, 0.0), AISLE_WAYPOINT_TURN_IN_PLACE);
+    (void)add(0.0, 0.0, 2.5);
+    (void)add(-4.0, 3.0, 2.5);
+    fill_way();
+    for (double u = 0.05; u < 0.6; u += 0.1) { // getting faster, even, and nearly slowing down
+        aisle_band_motion motion = motion_from((aisle_place){1, u}, 0.0, 0.4);
+        aisle_band_make(&whole, &motion);
+        const double turned = 2.5 * u;
+        const double rate = fmin(sqrt(2.0 * vehicle.alpha_max * fmin(turned, 2.5 - turned)), vehicle.omega_max);
+        aisle_waypoint_msg cut[3] = {path[0], path[1], path[2]};
+        cut[0].theta = turned;
+        motion.w = cut;
+        motion.at.u = 0.0;
+        motion.omega = rate;
+        motion.rested = (double)INFINITY;
+        aisle_band_make(&band, &motion);
+        TEST_ASSERT_TRUE(band.n > 3 && whole.n > 3);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3, whole.at[whole.n - 1U].pose.theta, band.at[band.n - 1U].pose.theta);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3, whole.at[whole.n - 1U].until, band.at[band.n - 1U].until);
+        motion.omega = 0.0;
+        aisle_band_make(&band, &motion);
+        TEST_ASSERT_TRUE(band.at[band.n - 1U].until < whole.at[whole.n - 1U].until - 0.05);
+    }
+}
+
 static void test_too_many_places_are_told(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(30.0, 0.5);
@@ -241,6 +270,7 @@ int main(void) {
     RUN_TEST(test_a_vehicle_that_dwells_longer_than_the_lease_has_no_band);
     RUN_TEST(test_a_cap_holds_from_where_braking_lets_it);
     RUN_TEST(test_it_gains_speed_no_faster_than_it_can);
+    RUN_TEST(test_a_turn_made_anew_goes_on_from_the_rate_that_is_told);
     RUN_TEST(test_too_many_places_are_told);
     return UNITY_END();
 }

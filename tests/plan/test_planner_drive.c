@@ -203,6 +203,18 @@ static void test_a_person_who_stays_is_driven_round_where_there_is_room(void) {
                      counters[AISLE_COUNTER_WAIT_MS] > 0); // both costs are told
 }
 
+// By its velocity it is gone at once, each time that it is asked.
+static void test_a_way_round_is_taken_of_one_who_always_seems_to_be_leaving(void) {
+    setup_hall(20.0, 12.0);
+    open_hall(2.0, 6.0, 0.0);
+    see(7, 11.0, 6.0, 0.0, 1.2);
+    go(1, 18.0, 6.0);
+    TEST_ASSERT_EQUAL_INT(-1, drive_to(18.0, 6.0, 1200));
+    const int64_t *counters = aisle_planner_counters(door);
+    TEST_ASSERT_TRUE(counters[AISLE_COUNTER_ROUNDS] >= 1);
+    TEST_ASSERT_TRUE(counters[AISLE_COUNTER_WAIT_MS] > counters[AISLE_COUNTER_ROUND_MS]);
+}
+
 static void test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one(void) {
     setup_hall(20.0, 14.0);
     hall_add(4.0, 4.0, 16.0, 10.0); // aisles of 4 m below and above
@@ -226,11 +238,9 @@ static void ticks(int n) {
     }
 }
 
-// How long a dwell is left is the vehicle's own count: by the planner's it may still have seconds.
-static void test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once(void) {
-    setup_hall(20.0, 3.0);
-    open_hall(2.0, 1.5, 0.0);
-    aisle_goal_list_msg goals = door_goals(1, 8.0, 1.5);
+// To a goal half way, to stay there for 8 s, and on.
+static void dwell_on_the_way(double x) {
+    aisle_goal_list_msg goals = door_goals(1, x, 1.5);
     goals.goals[0].dwell = 8.0F;
     goals.goals[1] = goals.goals[0];
     goals.goals[1].id = goals.goals[0].id + 1;
@@ -238,9 +248,16 @@ static void test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once(
     goals.num_goals = 2;
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_GOALS, &goals));
     door_settle();
-    for (int i = 0; i < 400 && hypot(here.x - 8.0, here.y - 1.5) > 0.01; i++) {
+    for (int i = 0; i < 400 && hypot(here.x - x, here.y - 1.5) > 0.01; i++) {
         tick();
     }
+}
+
+// How long a dwell is left is the vehicle's own count: by the planner's it may still have seconds.
+static void test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once(void) {
+    setup_hall(20.0, 3.0);
+    open_hall(2.0, 1.5, 0.0);
+    dwell_on_the_way(8.0);
     ticks(20);
     TEST_ASSERT_TRUE(agv.drives && here.vx < 0.01F);
     see(7, 9.5, 1.5, 0.0, 0.0);
@@ -316,6 +333,29 @@ static void test_hold_brakes_along_the_path_and_resume_goes_on(void) {
     TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0);
 }
 
+// What is out begins where the vehicle is believed to be when it is made, and the next pose may say that it is not so far.
+static void test_a_turn_is_braked_though_the_pose_is_behind_the_path_that_is_out(void) {
+    for (int late = 0; late < 6; late++) {
+        open_hall(10.0, 5.0, 0.0);
+        go(1, 4.0, 5.0);
+        for (int i = 0; i < 200 && fabs(here.theta) < 1.0 + 0.05 * late; i++) {
+            tick();
+        }
+        see(7, 12.9, 5.0, 0.0, 0.0);
+        ticks(1);
+        TEST_ASSERT_TRUE(agv.drives);
+        here.theta -= here.theta > 0.0 ? 0.06 : -0.06;
+        here.utime += 1000;
+        door_now += 1000;
+        here.seq++;
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+        door_settle();
+        take_path();
+        command(AISLE_COMMAND_HOLD, 0);
+        TEST_ASSERT_EQUAL(AISLE_PATH_STOP, agv.path.status);
+    }
+}
+
 static void test_cancel_brakes_along_the_path_and_then_nothing_is_out(void) {
     open_hall(2.0, 5.0, 0.0);
     go(1, 18.0, 5.0);
@@ -330,18 +370,28 @@ static void test_cancel_brakes_along_the_path_and_then_nothing_is_out(void) {
     TEST_ASSERT_EQUAL_INT(before, door_paths);
 }
 
-static void test_a_stale_pose_brakes_the_vehicle_within_the_timeout(void) {
+// From the last good pose on: without any, or with poses `old` us old.
+static void brakes_within_the_timeout(int64_t old) {
     open_hall(2.0, 5.0, 0.0);
     go(1, 18.0, 5.0);
     ticks(100);
     const int64_t last = door_now;
     while (agv.path.status != AISLE_PATH_STOP && door_now < last + 1000000) {
         door_now += 10000;
+        if (old > 0) {
+            here.utime = door_now - old;
+            here.seq++;
+            (void)door_submit(AISLE_INPUT_POSE, &here);
+        }
         door_settle();
         take_path();
     }
     is_braking(AISLE_STATUS_POSE_STALE);
     TEST_ASSERT_TRUE(door_now - last <= (int64_t)(limits.pose_timeout * 1e6) + 100000);
+}
+
+static void test_a_stale_pose_brakes_the_vehicle_within_the_timeout(void) {
+    brakes_within_the_timeout(0);
     TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_POSE_STALE, status_now().cause);
 }
 
@@ -358,20 +408,7 @@ static void test_a_clock_that_leaps_ahead_brakes_the_vehicle_until_poses_come_by
 }
 
 static void test_poses_by_a_clock_set_back_are_none_and_brake_the_vehicle_within_the_timeout(void) {
-    open_hall(2.0, 5.0, 0.0);
-    go(1, 18.0, 5.0);
-    ticks(100);
-    const int64_t last = door_now;
-    while (agv.path.status != AISLE_PATH_STOP && door_now < last + 1000000) {
-        door_now += 10000;
-        here.utime = door_now - 5000000;
-        here.seq++;
-        (void)door_submit(AISLE_INPUT_POSE, &here);
-        door_settle();
-        take_path();
-    }
-    is_braking(AISLE_STATUS_POSE_STALE);
-    TEST_ASSERT_TRUE(door_now - last <= (int64_t)(limits.pose_timeout * 1e6) + 100000);
+    brakes_within_the_timeout(5000000);
     TEST_ASSERT_TRUE(drive_to(18.0, 5.0, 600) > 0); // the clock is right again
 }
 
@@ -538,8 +575,10 @@ int main(void) {
     RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
     RUN_TEST(test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once);
     RUN_TEST(test_nothing_is_sent_to_one_that_has_no_path_and_moves_until_it_rests);
+    RUN_TEST(test_a_way_round_is_taken_of_one_who_always_seems_to_be_leaving);
     RUN_TEST(test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one);
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
+    RUN_TEST(test_a_turn_is_braked_though_the_pose_is_behind_the_path_that_is_out);
     RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);
     RUN_TEST(test_a_stale_pose_brakes_the_vehicle_within_the_timeout);
     RUN_TEST(test_a_clock_that_leaps_ahead_brakes_the_vehicle_until_poses_come_by_it);

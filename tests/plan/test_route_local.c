@@ -297,6 +297,16 @@ static void test_any_slicing_gives_the_same_bytes_and_units(void) {
     }
 }
 
+static void test_a_way_round_has_its_own_budget_or_the_requests_if_that_is_less(void) {
+    ask(1.0, 1.0, 9.0, 1.0);
+    for (int i = 0; i < 2; i++) {
+        request.options.work_units = i == 0 ? 1000000 : 500;
+        aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
+        aisle_route_go_round(&route, &movers, from_us, false);
+        TEST_ASSERT_EQUAL_UINT32(i == 0 ? AISLE_ROUTE_ROUND_UNITS : 500U, route.budget);
+    }
+}
+
 static void test_movers_are_forgotten_by_the_next_request(void) {
     two_aisles();
     add_mover(77, 10.0, 9.0, 0.0, 0.3);
@@ -326,6 +336,7 @@ int main(void) {
     RUN_TEST(test_goals_are_visited_in_order_one_that_it_stands_at_included);
     RUN_TEST(test_a_long_body_takes_an_aisle_its_disc_does_not_fit_if_its_sight_reaches_through);
     RUN_TEST(test_any_slicing_gives_the_same_bytes_and_units);
+    RUN_TEST(test_a_way_round_has_its_own_budget_or_the_requests_if_that_is_less);
     RUN_TEST(test_movers_are_forgotten_by_the_next_request);
     return UNITY_END();
 }

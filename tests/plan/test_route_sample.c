@@ -123,6 +123,27 @@ static void test_bodies_with_a_heading_and_cars_are_driven_as_they_can(void) {
     }
 }
 
+// A rack hall of which the search for a manoeuvre gives up: two stops close by what is there.
+static void test_auto_asks_an_adaptive_tree_where_nothing_else_finds_a_way(void) {
+    hall_rectangle(1.8, 0.9, 0.05F);
+    hall_begin(20.0, 14.0);
+    const double left[4] = {3.26, 7.62, 11.98, 16.34};
+    for (int i = 0; i < 4; i++) {
+        hall_add(left[i], 3.28, left[i] + 1.1, 10.72);
+    }
+    open_hall();
+    ask(AISLE_OPTIONS_AUTO);
+    request.start = (aisle_goal_msg){.x = 7.5, .y = 13.45, .theta = 3.141592653589793};
+    request.goals[0] = (aisle_goal_msg){.id = 11, .x = 11.0, .y = 3.85, .theta = 1.5707963267948966};
+    plan(1000);
+    request.options.planner = AISLE_OPTIONS_RRT_ADAPTIVE; // as it is told
+    (void)proof(0);
+    request.options.planner = AISLE_OPTIONS_ASTAR; // asks none
+    plan(1000);
+    TEST_ASSERT_NULL(aisle_route_answer(&route));
+    TEST_ASSERT_EQUAL_INT16(AISLE_STATUS_KINEMATIC, route.cause.cause);
+}
+
 static void test_several_goals_and_one_where_the_leg_begins(void) {
     slit_hall(0.8);
     for (int i = 0; i < PLANNERS; i++) {
@@ -180,6 +201,7 @@ int main(void) {
     RUN_TEST(test_an_adaptive_planner_gets_through_a_slit_with_any_step);
     RUN_TEST(test_in_the_papers_form_a_fixed_step_fails_and_the_adaptive_one_does_not);
     RUN_TEST(test_bodies_with_a_heading_and_cars_are_driven_as_they_can);
+    RUN_TEST(test_auto_asks_an_adaptive_tree_where_nothing_else_finds_a_way);
     RUN_TEST(test_several_goals_and_one_where_the_leg_begins);
     RUN_TEST(test_the_same_seed_gives_the_same_bytes_however_it_is_cut);
     RUN_TEST(test_a_star_cut_short_by_the_budget_gives_the_best_path_so_far_and_says_so);

@@ -184,9 +184,8 @@ static long double drive_piece(int i, long double u, long double clock, long dou
 
 // The whole motion from the vehicle's place; pull: -1 its real speed is above the path's, 1 below, 0 as the path's.
 static void drive_on(int pull) {
-    long double clock = (long double)asked.rest, real = (long double)asked.v * (long double)asked.v;
-    real = asked.rest > 0.0 ? 0.0L : real;
-    pull = asked.rest > 0.0 ? 1 : (turns_at((int)asked.at_piece - 1) ? 0 : pull);
+    long double clock = 0.0L, real = (long double)asked.v * (long double)asked.v;
+    pull = turns_at((int)asked.at_piece - 1) ? 0 : pull;
     tick_count = 0;
     for (int i = (int)asked.at_piece; i < path.num_waypoints; i++) {
         const bool first = i == (int)asked.at_piece, turns = turns_at(i - 1);
@@ -353,15 +352,6 @@ static void test_a_path_of_one_waypoint_is_always_proved(void) {
     (void)add_mover(1.0, 1.0, 1.0, 2.0);
     ask(1.0);
     assert_proved();
-}
-
-static void test_a_vehicle_that_stands_all_the_lease_is_always_proved(void) {
-    (void)add_mover(0.0, 0.0, 1.0, 2.0);
-    assert_refused();
-    asked.rest = 1.301; // reaction time and lease
-    assert_proved();
-    asked.rest = 1.299;
-    assert_refused();
 }
 
 static void test_at_the_end_of_the_path_all_is_proved(void) {
@@ -701,9 +691,6 @@ static void test_the_dwell_at_its_place_is_what_the_request_says(void) {
     assert_proved(); // 20 s away
     asked.v = 0.0;
     assert_refused(); // it stands there: may be over
-    asked.rest = 10.0;
-    assert_proved(); // it is not
-    asked.rest = 0.0;
     asked.at_u = 0.9;
     assert_proved();
     asked.at_piece = 2;
@@ -1002,9 +989,8 @@ static void random_place(void) {
     asked.at_piece = 1U + (uint32_t)below(path.num_waypoints - 1);
     asked.at_u = below(4) == 0 ? 0.0 : uniform(0.0, 1.0);
     asked.lease = 0.25 * (1 << below(3));
-    asked.rest = below(8) == 0 ? uniform(0.0, 1.5) : 0.0;
     drive_on(0);
-    asked.v = asked.rest > 0.0 || ticks[0].turns ? 0.0 : (double)ticks[0].v;
+    asked.v = ticks[0].turns ? 0.0 : (double)ticks[0].v;
 }
 
 typedef struct tally {
@@ -1070,7 +1056,6 @@ static void test_other_speeds_than_the_path_s_are_proved_from_what_they_are(void
         random_movers(1 + below(4));
         random_place();
         const double told = asked.v;
-        asked.rest = 0.0;
         asked.v = below(2) == 0 ? told + uniform(0.0, 0.3) : told * uniform(0.0, 1.0);
         if (ticks[0].turns || !(told > 0.0)) {
             continue;
@@ -1196,7 +1181,6 @@ int main(int argc, char **argv) {
     UNITY_BEGIN();
     RUN_TEST(test_without_movers_the_stamp_is_given_at_once_for_the_whole_lease);
     RUN_TEST(test_a_path_of_one_waypoint_is_always_proved);
-    RUN_TEST(test_a_vehicle_that_stands_all_the_lease_is_always_proved);
     RUN_TEST(test_at_the_end_of_the_path_all_is_proved);
     RUN_TEST(test_what_stands_beside_the_way_is_kept_off_by_the_margin);
     RUN_TEST(test_what_comes_towards_it_is_off_where_and_when_it_rests_last);
