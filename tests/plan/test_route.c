@@ -1,6 +1,7 @@
 #include "plan/route.h"
 
 #include "door.h"
+#include "hall_route.h"
 
 enum { SEEDS = 10 };
 
@@ -10,11 +11,7 @@ static aisle_path_msg head;
 static aisle_path_msg answer;
 
 static void open_with(const aisle_limits *limits) {
-    aisle_arena arena = hall_arena(24U << 20);
-    memset(&route, 0, sizeof route);
-    aisle_route_carve(&route, &arena, limits);
-    route.budget_default = 1000000U;
-    hall_open(&arena, 0.05F);
+    hall_open_route(&route, limits, 1000000U);
 }
 
 static void open_hall(void) {

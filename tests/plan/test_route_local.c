@@ -1,6 +1,7 @@
 #include "plan/route.h"
 
 #include "door.h"
+#include "hall_route.h"
 
 enum { SEEDS = 12 };
 
@@ -14,11 +15,7 @@ static int64_t from_us;
 static bool with_movers, in_motion;
 
 static void open_hall(void) {
-    aisle_arena arena = hall_arena(24U << 20);
-    memset(&route, 0, sizeof route);
-    aisle_route_carve(&route, &arena, &hall_limits);
-    route.budget_default = 1000000U;
-    hall_open(&arena, 0.05F);
+    hall_open_route(&route, &hall_limits, 1000000U);
 }
 
 static void add_mover(int32_t id, double x, double y, double vx, double radius) {

@@ -2,6 +2,7 @@
 #include "plan/route.h"
 
 #include "door.h"
+#include "hall_route.h"
 #include "optimum.h"
 
 enum { HALLS = 40 };
@@ -12,11 +13,7 @@ static aisle_path_msg head;
 static aisle_path_msg answer;
 
 static void open_hall(void) {
-    aisle_arena arena = hall_arena(24U << 20);
-    memset(&route, 0, sizeof route);
-    aisle_route_carve(&route, &arena, &hall_limits);
-    route.budget_default = 1000000U;
-    hall_open(&arena, 0.05F);
+    hall_open_route(&route, &hall_limits, 1000000U);
 }
 
 static void random_hall(aisle_rng *rng) {
