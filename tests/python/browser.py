@@ -26,6 +26,7 @@ FLAGS = [
     "--remote-debugging-pipe",
 ]
 WAIT = 30.0  # s, for one answer
+MOUSE_TRIES = 5
 
 
 def find_chromium() -> str | None:
@@ -137,12 +138,20 @@ class Browser:
         self.call("Input.dispatchKeyEvent", type="keyUp", **common)
 
     def mouse(self, kind: str, x: float, y: float, **more: Any) -> None:
-        """Returns when the page has handled it, which may be after the browser has taken it; a second later at most."""
+        """Returns when the page has handled it. The browser drops events until a new page is on the screen, so what the
+        page has not heard is sent again."""
         event = {"mousePressed": "pointerdown", "mouseReleased": "pointerup", "mouseMoved": "pointermove"}.get(kind, "wheel")
-        heard = f"addEventListener('{event}', () => setTimeout(done), {{ once: true, capture: true }})"
-        self.js(f"window.heard = new Promise((done) => {{ setTimeout(done, 1000); {heard}; }}), 0")
-        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
-        self.js("window.heard.then(() => 0)")
+        heard = f"addEventListener('{event}', () => setTimeout(() => done(true)), {{ once: true, capture: true }})"
+        for _ in range(MOUSE_TRIES):
+            self.js(f"window.heard = new Promise((done) => {{ setTimeout(() => done(false), 2000); {heard}; }}), 0")
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+            if self.js("window.heard"):
+                return
+        raise TimeoutError(f"the page never heard {kind}")
+
+    def click(self, x: float, y: float) -> None:
+        self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        self.mouse("mouseReleased", x, y, button="left", clickCount=1)
 
     def drag(self, x0: float, y0: float, x1: float, y1: float) -> None:
         held = {"button": "left", "buttons": 1}

@@ -210,9 +210,7 @@ def box_of(browser, ident):
 
 def click(browser, ident):
     x, y, width, height = box_of(browser, ident)
-    held = {"x": x + width / 2, "y": y + height / 2, "button": "left", "clickCount": 1}
-    browser.mouse("mousePressed", buttons=1, **held)
-    browser.mouse("mouseReleased", **held)
+    browser.click(x + width / 2, y + height / 2)
 
 
 # ---- in the browser
@@ -388,9 +386,7 @@ def test_a_click_on_a_mover_tells_of_it(shown):
     move_slider(shown, 6.05)
     box = box_of(shown, "scene")
     x, y = shown.js("[sx(8.0), sy(6.8)]")
-    held = {"x": box[0] + x, "y": box[1] + y, "button": "left", "clickCount": 1}
-    shown.mouse("mousePressed", buttons=1, **held)
-    shown.mouse("mouseReleased", **held)
+    shown.click(box[0] + x, box[1] + y)
     shown.until("document.getElementById('facts').textContent.includes('mover 42person')")
     told = shown.js("document.getElementById('facts').textContent")
     away = math.hypot(8.0 - 1.0 - V * 6.05, 8.0 - 0.2 * 6.05 - 2.0)
