@@ -19,6 +19,7 @@ typedef struct aisle_leg {
     uint32_t piece_first;  // of the manoeuvre that stands for its polyline, in the route's pieces
     uint32_t piece_count;  // waypoints of it, where the leg begins included; 0: there is none
     bool searched;         // for a manoeuvre
+    bool is_eased;         // and for one that keeps clear where that is cheaper
     bool is_sampled;       // a sampling planner found the way
     bool heading_is_free;  // where the leg begins
     double heading;        // rad, there, else

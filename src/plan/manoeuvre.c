@@ -26,6 +26,7 @@ void aisle_manoeuvre_carve(aisle_manoeuvre *self, aisle_arena *arena, const aisl
 
 void aisle_manoeuvre_carve_way(aisle_manoeuvre *self, aisle_arena *arena) {
     self->move = (aisle_move *)aisle_arena_take(arena, AISLE_MANOEUVRE_CHAIN, sizeof(aisle_move));
+    self->near = (float *)aisle_arena_take(arena, AISLE_MANOEUVRE_CHAIN, sizeof(float));
     self->junction = (aisle_pose2 *)aisle_arena_take(arena, AISLE_MANOEUVRE_CHAIN + 1U, sizeof(aisle_pose2));
 }
 
@@ -47,6 +48,7 @@ static const struct attempt {
 static void begin(aisle_manoeuvre *self, const aisle_manoeuvre_request *request) {
     const aisle_vehicle *vehicle = request->space->vehicle;
     self->request = *request;
+    self->request.units = request->units > 0U ? request->units : AISLE_MANOEUVRE_UNITS;
     self->rule = aisle_vehicle_space_rule(vehicle);
     self->need = vehicle->margin + 0.5 * AISLE_SPACE_SLACK;
     self->moves = 0;
@@ -58,6 +60,9 @@ void aisle_manoeuvre_start(aisle_manoeuvre *self, const aisle_manoeuvre_request 
     begin(self, request);
     aisle_togo_start(&self->togo, request->space->grid, request->reach, aisle_pose_place(request->start),
                      aisle_pose_place(request->goal));
+    if (request->dear > 1U) {
+        aisle_togo_keep_clear(&self->togo, request->space->vehicle->inner_radius + request->clear, request->dear);
+    }
     self->phase = AISLE_MANOEUVRE_FIELD;
 }
 
@@ -194,7 +199,7 @@ aisle_status aisle_manoeuvre_step(aisle_manoeuvre *self, uint32_t units, uint32_
         self->units += self->phase == AISLE_MANOEUVRE_FIELD ? 0U : 1U;
         step_phase(self, units - self->units);
         if (self->phase >= AISLE_MANOEUVRE_TREE && self->phase <= AISLE_MANOEUVRE_SEARCH &&
-            self->spent + self->units > AISLE_MANOEUVRE_UNITS) {
+            self->spent + self->units > self->request.units) {
             self->phase = AISLE_MANOEUVRE_FAILED;
         }
     }

@@ -14,8 +14,9 @@
 // cells with exact configurations in them find nearly all). Then the chain is shortened: from each
 // configuration on it the ways of steer.h to later ones are tried and taken where they cost less.
 // No motion is against a DIRECTED zone (zones.h); tolls are not minded.
-// Cost: metres, more for one backwards, and what cusps and turns add (vehicle_space.h). Not an optimum,
-// and no proof where it finds none.
+// Cost: metres, more for one backwards, and what cusps and turns add (vehicle_space.h); where request.dear is above 1, so many
+// times a metre that comes nearer than request.clear to something, by gaps at most PART of manoeuvre_free.c apart. Not an
+// optimum, and no proof where it finds none.
 // Files: manoeuvre.c (attempts, phases), manoeuvre_targets.c, manoeuvre_open.c (open list), manoeuvre_expand.c (successors),
 // manoeuvre_free.c (tests), manoeuvre_chain.c (the way found), manoeuvre_shorten.c.
 // Memory: 80 bytes a node and two slots of 16, nodes by the limit of cells; togo.h; 80 KiB. Time: AISLE_MANOEUVRE_UNITS
@@ -42,7 +43,10 @@ typedef struct aisle_manoeuvre_request {
     const aisle_vec2 *way;            // [way_count] a polyline from start to goal, the caller's until the end; its
     uint32_t way_count;               // corners are rounded by way_radius (m); 0: none is known
     double way_radius;
-    double reach; // m, of the disc whose cost-to-go leads: inner radius and margin, or more
+    double reach;   // m, of the disc whose cost-to-go leads: inner radius and margin, or more
+    double clear;   // m, of the body's gap: nearer ...
+    uint32_t dear;  // ... a metre costs so many times as much, at most AISLE_TOGO_DEAR_MAX; 0, 1: all metres are alike
+    uint32_t units; // that may be spent on the search; 0: AISLE_MANOEUVRE_UNITS
 } aisle_manoeuvre_request;
 
 typedef struct aisle_manoeuvre_node {
@@ -53,6 +57,7 @@ typedef struct aisle_manoeuvre_node {
     uint16_t target;  // that a link led to; AISLE_MANOEUVRE_TARGETS: a step led here
     uint8_t way;      // of the link, which of steer's
     int8_t direction; // of the last move that has a length: 1, -1; 0: none yet
+    bool is_weighed;  // a link whose motion is known to be free, and its cost what it is
 } aisle_manoeuvre_node;
 
 typedef struct aisle_manoeuvre_slot { // what is known of a cell of configurations
@@ -106,6 +111,7 @@ typedef struct aisle_manoeuvre {
     uint32_t link_next;    // links are made again when so many are expanded
     uint32_t link_fails;   // links that came to nothing, one after the other
     aisle_move *move;      // [AISLE_MANOEUVRE_CHAIN] the way found
+    float *near;           // [AISLE_MANOEUVRE_CHAIN] m, of each move, what it costs beyond that
     aisle_pose2 *junction; // [AISLE_MANOEUVRE_CHAIN + 1] before each move and at the end
     uint32_t moves;
     uint32_t at, pass; // of shortening

@@ -43,6 +43,7 @@ static void push_step(aisle_manoeuvre *self, uint32_t parent, double length, dou
     node.pose = aisle_move_end(from->pose, move);
     node.pose.theta = aisle_angle_wrap(node.pose.theta);
     if (aisle_manoeuvre_pose_free(self, node.pose)) {
+        node.cost += (float)aisle_manoeuvre_surcharge(self, from->pose, &move, 1);
         aisle_manoeuvre_push(self, &node);
     }
 }

@@ -93,6 +93,19 @@ void aisle_manoeuvre_push(aisle_manoeuvre *self, const aisle_manoeuvre_node *nod
 
 // ---- out
 
+// A link's price is known only when its motion is: is it higher, the link waits for its turn once more.
+static bool waits_for_its_price(aisle_manoeuvre *self, uint32_t n, const aisle_move *moves, uint32_t count) {
+    aisle_manoeuvre_node node = self->node[n];
+    double more = aisle_manoeuvre_surcharge(self, self->node[node.parent].pose, moves, count);
+    if (!(more > 0.0)) {
+        return false;
+    }
+    node.cost += (float)more;
+    node.is_weighed = true;
+    aisle_manoeuvre_push(self, &node);
+    return true;
+}
+
 // Was its cell or target closed by another one; else it is closed by this one if its motion is free.
 static bool closes(aisle_manoeuvre *self, uint32_t n) {
     const aisle_manoeuvre_node *node = &self->node[n];
@@ -111,12 +124,16 @@ static bool closes(aisle_manoeuvre *self, uint32_t n) {
     if (*closed) {
         return false;
     }
-    uint32_t count = aisle_manoeuvre_moves_to(self, n, moves);
-    *closed = count == 0U || aisle_manoeuvre_moves_free(self, self->node[node->parent].pose, moves, count);
+    uint32_t count = node->is_weighed ? 0U : aisle_manoeuvre_moves_to(self, n, moves);
+    bool is_free = count == 0U || aisle_manoeuvre_moves_free(self, self->node[node->parent].pose, moves, count);
     if (node->target < AISLE_MANOEUVRE_TARGETS) {
-        self->link_fails = *closed ? 0U : self->link_fails + 1U;
+        self->link_fails = is_free ? 0U : self->link_fails + 1U;
+        if (is_free && !node->is_weighed && waits_for_its_price(self, n, moves, count)) {
+            return false;
+        }
     }
-    return *closed;
+    *closed = is_free;
+    return is_free;
 }
 
 uint32_t aisle_manoeuvre_next(aisle_manoeuvre *self, uint32_t most, bool *ended) {

@@ -11,6 +11,8 @@ static inline aisle_vec2 aisle_pose_place(aisle_pose2 pose) {
 // manoeuvre_free.c: does the body keep what it needs at this configuration; all along these moves from it on? Exact, a unit a gap.
 bool aisle_manoeuvre_pose_free(aisle_manoeuvre *self, aisle_pose2 pose);
 bool aisle_manoeuvre_moves_free(aisle_manoeuvre *self, aisle_pose2 from, const aisle_move *moves, uint32_t count);
+// What moves from a configuration on cost beyond steer.h's, m, because they come near to something.
+double aisle_manoeuvre_surcharge(aisle_manoeuvre *self, aisle_pose2 from, const aisle_move *moves, uint32_t count);
 
 // manoeuvre_open.c: the open list and the cells of configurations.
 //

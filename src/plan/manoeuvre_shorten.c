@@ -12,7 +12,11 @@
 #define TRIED_EACH 3U // ways of steer.h
 #define SAME 1e-9     // of curvatures
 
-// Takes a move out of the chain and puts others in its place. False: there is no room.
+static double weigh(aisle_manoeuvre *self, uint32_t i) {
+    return aisle_manoeuvre_surcharge(self, self->junction[i], &self->move[i], 1);
+}
+
+// Takes a move out of the chain and puts others in its place; what they cost beyond is not known yet. False: there is no room.
 static bool splice(aisle_manoeuvre *self, uint32_t first, uint32_t removed, const aisle_move *moves, uint32_t count) {
     if (self->moves - removed + count > AISLE_MANOEUVRE_CHAIN) {
         return false;
@@ -21,6 +25,7 @@ static bool splice(aisle_manoeuvre *self, uint32_t first, uint32_t removed, cons
     memmove(self->move + first + count, self->move + first + removed, behind * sizeof(aisle_move));
     // The junction after what was removed stays as it was, exactly.
     memmove(self->junction + first + count, self->junction + first + removed, (behind + 1U) * sizeof(aisle_pose2));
+    memmove(self->near + first + count, self->near + first + removed, behind * sizeof(float));
     memcpy(self->move + first, moves, count * sizeof(aisle_move));
     for (uint32_t i = 0; i + 1U < count; i++) {
         aisle_pose2 p = aisle_move_end(self->junction[first + i], moves[i]);
@@ -40,6 +45,8 @@ static void cut(aisle_manoeuvre *self) {
             if (!splice(self, i, 1, both, 2)) {
                 return;
             }
+            self->near[i] = (float)weigh(self, i);
+            self->near[i + 1U] = (float)weigh(self, i + 1U);
         }
     }
 }
@@ -58,7 +65,9 @@ static void merge(aisle_manoeuvre *self) {
         aisle_move a = self->move[i], b = self->move[i + 1U];
         if (may_merge(a, b)) {
             aisle_move sum = {a.length + b.length, a.turn + b.turn};
+            float near = self->near[i] + self->near[i + 1U];
             (void)splice(self, i, 2, &sum, 1);
+            self->near[i] = near;
         } else {
             i++;
         }
@@ -66,6 +75,9 @@ static void merge(aisle_manoeuvre *self) {
 }
 
 void aisle_manoeuvre_begin_shorten(aisle_manoeuvre *self) {
+    for (uint32_t i = 0; i < self->moves; i++) {
+        self->near[i] = (float)weigh(self, i);
+    }
     merge(self);
     cut(self);
     self->at = 0;
@@ -76,7 +88,11 @@ void aisle_manoeuvre_begin_shorten(aisle_manoeuvre *self) {
 static double cost_between(const aisle_manoeuvre *self, uint32_t first, uint32_t count) {
     uint32_t from = first > 0U ? first - 1U : first;
     uint32_t to = first + count < self->moves ? first + count + 1U : first + count;
-    return aisle_steer_cost(&self->rule, self->move + from, to - from);
+    double near = 0.0;
+    for (uint32_t i = first; i < first + count; i++) {
+        near += (double)self->near[i];
+    }
+    return aisle_steer_cost(&self->rule, self->move + from, to - from) + near;
 }
 
 // The same with other moves there.
@@ -94,17 +110,29 @@ static double cost_instead(const aisle_manoeuvre *self, uint32_t first, uint32_t
     return aisle_steer_cost(&self->rule, moves, n);
 }
 
+static bool put(aisle_manoeuvre *self, uint32_t first, uint32_t removed, const aisle_steer_way *way) {
+    if (!splice(self, first, removed, way->move, way->count)) {
+        return false;
+    }
+    for (uint32_t i = first; i < first + way->count; i++) {
+        self->near[i] = (float)weigh(self, i);
+    }
+    return true;
+}
+
 static bool try_between(aisle_manoeuvre *self, uint32_t i, uint32_t j) {
     aisle_steer_way ways[AISLE_STEER_WAYS];
     uint32_t count = aisle_steer(&self->rule, self->junction[i], self->junction[j], ways);
     double now = cost_between(self, i, j - i);
     self->units += 1U;
     for (uint32_t k = 0; k < count && k < TRIED_EACH; k++) {
-        if (cost_instead(self, i, j - i, &ways[k]) > now - GAIN) {
+        double cost = cost_instead(self, i, j - i, &ways[k]);
+        if (cost > now - GAIN || !aisle_manoeuvre_moves_free(self, self->junction[i], ways[k].move, ways[k].count)) {
             continue;
         }
-        if (aisle_manoeuvre_moves_free(self, self->junction[i], ways[k].move, ways[k].count)) {
-            return splice(self, i, j - i, ways[k].move, ways[k].count);
+        cost += aisle_manoeuvre_surcharge(self, self->junction[i], ways[k].move, ways[k].count);
+        if (!(cost > now - GAIN)) {
+            return put(self, i, j - i, &ways[k]);
         }
     }
     return false;

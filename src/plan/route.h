@@ -78,7 +78,8 @@
 #define AISLE_ROUTE_SAMPLE_DIM 3U
 #define AISLE_ROUTE_ROUND_UNITS 60000U // work units of a way round; who finds none by then waits
 #define AISLE_ROUTE_NONE UINT32_MAX
-#define AISLE_ROUTE_STRIDE 0.1                                  // m
+#define AISLE_ROUTE_CREEP_SPARE 2e-3 // m, what is told of a clearance may be lower than the truth by less
+#define AISLE_ROUTE_STRIDE 0.1       // m
 #define AISLE_ROUTE_TOLD_MAX ((uint32_t)AISLE_RELEASE_TOLD_MAX) // waypoints of a refusal
 #define AISLE_ROUTE_BYTES AISLE_CACHE_PATH_MAX                  // of an encoded path_t: 54 a waypoint and the head
 

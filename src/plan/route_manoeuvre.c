@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-#define OTHER_WAY 0.02 // of its length, by which a longer way is another one
+#define OTHER_WAY 0.02     // of its length, by which a longer way is another one
+#define EASE_UNITS 300000U // of the search for a manoeuvre that keeps clear
 
 bool aisle_route_has_heading(const aisle_route *self) {
     return !aisle_vehicle_is_disc(self->vehicle) || self->vehicle->curvature_max > 0.0;
@@ -109,16 +110,25 @@ static void search(aisle_route *self, const aisle_route_guide *guide) {
     const aisle_goal_msg *start = aisle_route_leg_start(self, self->leg);
     const aisle_vehicle *vehicle = self->vehicle;
     aisle_space_begin(&self->space, self->layout, vehicle, AISLE_SPACE_ALONG);
+    const bool eases = leg->is_eased;
+    double theta = goal->theta;
+    if (eases) { // the next leg goes on from there
+        theta = self->pieces[leg->piece_first + leg->piece_count - 1U].theta;
+    }
+    const double dear = floor(vehicle->v_max / vehicle->creep_speed + 0.5);
     const aisle_manoeuvre_request request = {.space = &self->space,
                                              .start = {start->x, start->y, aisle_angle_wrap(leg->heading)},
-                                             .goal = {goal->x, goal->y, aisle_angle_wrap(goal->theta)},
+                                             .goal = {goal->x, goal->y, aisle_angle_wrap(theta)},
                                              .start_is_free = leg->heading_is_free,
-                                             .goal_is_free = aisle_goal_heading_is_free(goal),
+                                             .goal_is_free = !eases && aisle_goal_heading_is_free(goal),
                                              .way = guide->points,
                                              .way_count = guide->count,
                                              .way_radius = guide->radius,
                                              .reach = guide == &self->guide[0] ? vehicle->inner_radius + vehicle->margin
-                                                                               : guide->reach};
+                                                                               : guide->reach,
+                                             .clear = vehicle->creep_clearance + AISLE_ROUTE_CREEP_SPARE,
+                                             .dear = eases ? (uint32_t)aisle_clamp(dear, 1.0, AISLE_TOGO_DEAR_MAX) : 1U,
+                                             .units = eases ? EASE_UNITS : 0U};
     aisle_manoeuvre_start(&self->manoeuvre, &request);
     self->other_guide = guide != &self->guide[0];
     self->stage = AISLE_ROUTE_MANOEUVRE;
@@ -134,16 +144,24 @@ bool aisle_route_begin_manoeuvre(aisle_route *self) {
     return true;
 }
 
+void aisle_route_ease_manoeuvre(aisle_route *self) {
+    search(self, &self->guide[0]);
+}
+
 // The way found as the leg's. False: the pieces of all legs do not fit.
 static bool take_pieces(aisle_route *self) {
     aisle_leg *leg = &self->legs[self->leg];
     uint32_t room = AISLE_ROUTE_PIECES - self->piece_count;
+    uint32_t count = aisle_manoeuvre_lay(&self->manoeuvre, self->pieces + self->piece_count, room);
+    if (count == 0U) {
+        return false;
+    }
     leg->piece_first = self->piece_count;
-    leg->piece_count = aisle_manoeuvre_lay(&self->manoeuvre, self->pieces + leg->piece_first, room);
+    leg->piece_count = count;
     leg->count = 0;
     leg->mode = AISLE_SPACE_ALONG;
     self->piece_count += leg->piece_count;
-    return leg->piece_count > 0U;
+    return true;
 }
 
 aisle_status aisle_route_step_manoeuvre(aisle_route *self, uint32_t units) {
@@ -152,7 +170,8 @@ aisle_status aisle_route_step_manoeuvre(aisle_route *self, uint32_t units) {
         return AISLE_BUSY;
     }
     self->nodes += (int64_t)self->manoeuvre.expanded;
-    if (st == AISLE_OK && take_pieces(self)) {
+    const bool taken = st == AISLE_OK && take_pieces(self);
+    if (taken || self->legs[self->leg].is_eased) {
         aisle_route_next_leg(self);
     } else if (!self->other_guide && has_other_guide(self)) {
         search(self, &self->guide[1]);

@@ -93,7 +93,9 @@ static void begin_leg(aisle_route *self) {
                        .mode = pieces > 0U ? AISLE_SPACE_ALONG : AISLE_SPACE_FREE_TURN};
     self->guide[0].count = self->guide[1].count = 0;
     aisle_route_take_heading(self);
-    if (pieces > 0U) { // no way for the body but this manoeuvre was found: it serves every objective
+    if (pieces > 0U && self->way->kind == AISLE_WAY_CLEAR && aisle_layout_has_blocks(self->layout)) {
+        aisle_route_begin_eased(self);
+    } else if (pieces > 0U) { // no way for the body but this manoeuvre was found: it serves every objective
         self->stage = AISLE_ROUTE_SEED;
         self->seed.phase = AISLE_SEED_DONE;
     } else if (beeline < 1e-6 && !turns_there(self) && aisle_route_begin_manoeuvre(self)) {

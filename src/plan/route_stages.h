@@ -117,6 +117,11 @@ bool aisle_route_ends_free(aisle_route *self);
 // Keeps the leg's polyline, a way for a disc of `reach` (m) whose corners are rounded by `radius`, as what leads the
 // search: the first one and the last one kept.
 void aisle_route_keep_guide(aisle_route *self, double radius, double reach);
+
+// For a leg that has a manoeuvre already: one that keeps clear of obstacles where that is cheaper and ends with the same
+// heading; the other is kept if there is none. First a way of the disc inside to lead it, then the search.
+void aisle_route_begin_eased(aisle_route *self);
+void aisle_route_ease_manoeuvre(aisle_route *self);
 // Begins the search for a manoeuvre on the leg under way; false: it was searched before, or heading does not matter. In
 // the first way alone: what it finds serves the later ones.
 bool aisle_route_begin_manoeuvre(aisle_route *self);

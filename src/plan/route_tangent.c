@@ -110,6 +110,27 @@ static void end_searches(aisle_route *self) {
     }
 }
 
+void aisle_route_begin_eased(aisle_route *self) {
+    aisle_leg *leg = &self->legs[self->leg];
+    leg->is_eased = true;
+    self->stage = AISLE_ROUTE_TANGENT;
+    aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
+    aisle_tangent_start(&self->tangent, self->layout, self->vehicle->inner_radius + self->space.keep,
+                        aisle_route_place(aisle_route_leg_start(self, self->leg)),
+                        aisle_route_place(&self->request.goals[self->leg]));
+}
+
+// What was found leads the search for a manoeuvre that keeps clear.
+static void lead(aisle_route *self, bool found) {
+    aisle_leg *leg = &self->legs[self->leg];
+    if (found && take_way(self, self->tangent.radius)) {
+        aisle_route_keep_guide(self, self->tangent.radius, self->tangent.radius);
+    }
+    leg->count = 0;
+    leg->tangent_radius = 0.0;
+    aisle_route_ease_manoeuvre(self);
+}
+
 static void go_on(aisle_route *self, bool found) {
     aisle_leg *leg = &self->legs[self->leg];
     if (self->way->kind == AISLE_WAY_GRID && !leg->is_slit) {
@@ -145,6 +166,10 @@ aisle_status aisle_route_step_tangent(aisle_route *self, uint32_t units) {
     self->tangent_units += self->spent - before;
     self->nodes += (int64_t)self->tangent.expansions - (int64_t)expanded;
     if (st == AISLE_BUSY && left_for_tangent(self) > 0U) {
+        return AISLE_BUSY;
+    }
+    if (self->legs[self->leg].is_eased) {
+        lead(self, st == AISLE_OK);
         return AISLE_BUSY;
     }
     bool is_bound = self->tangent_search == BOUND && self->way_index == 0U;

@@ -6,7 +6,6 @@
 #include <math.h>
 
 #define SHORT_SLACK 2e-4 // m, what a disc's exact way keeps beyond the margin, for the proof: nobody searches about it
-#define CREEP_SPARE 2e-3 // m, what is told of a clearance may be lower than the truth by less
 #define RISK_STEP 1e-4   // risks nearer to each other than this are alike
 #define LENGTH_SPAN 1048576.0 // m, no path is so long
 
@@ -83,7 +82,7 @@ static void begin_way(aisle_route *self) {
     bool is_short = self->way->kind == AISLE_WAY_SHORT && aisle_vehicle_is_disc(vehicle);
     double keep = vehicle->margin + (is_short ? SHORT_SLACK : AISLE_SPACE_SLACK);
     bool is_clear = self->way->kind == AISLE_WAY_CLEAR;
-    self->room = is_clear ? aisle_max(vehicle->creep_clearance + CREEP_SPARE, keep) : keep;
+    self->room = is_clear ? aisle_max(vehicle->creep_clearance + AISLE_ROUTE_CREEP_SPARE, keep) : keep;
     if (self->way->kind == AISLE_WAY_PAPER) {
         aisle_route_begin_paper(self);
     } else if (self->way->kind == AISLE_WAY_REPAIR) {

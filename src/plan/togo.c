@@ -7,6 +7,7 @@
 
 #define STRAIGHT 5U
 #define DIAGONAL 7U
+#define COST_MAX (AISLE_TOGO_NONE - DIAGONAL * AISLE_TOGO_DEAR_MAX) // from which on no step is made
 #define CELLS_A_UNIT 32U
 #define WORTH_SHARE 1.5 // of the start's cost, how far the search goes on where more than the way there is wanted
 #define WORTH_MORE 10.0 // m, and beyond
@@ -48,19 +49,32 @@ static void lay_cells(aisle_togo *self) {
     memset(self->cost, 0xFF, (size_t)self->w * self->h * sizeof(uint16_t));
 }
 
+// The least field value of a cell in which a disc may find room: a point of it may be half a diagonal from its centre, and so
+// may the obstacle's from its own.
+static uint32_t field_for(const aisle_grid *grid, double radius) {
+    double least = aisle_max(radius / grid->lattice.res - 1.4143, 0.5);
+    return (uint32_t)aisle_min(least * least, (double)AISLE_FIELD_SQ_MAX);
+}
+
 void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of, aisle_vec2 start, aisle_vec2 goal) {
     self->grid = grid;
     lay_cells(self);
-    // A point of the cell may be half a diagonal from its centre, and so may the obstacle's from its own.
-    double least = aisle_max(reach_of / grid->lattice.res - 1.4143, 0.5);
-    self->open_from = (uint32_t)aisle_min(least * least, (double)AISLE_FIELD_SQ_MAX);
+    self->open_from = field_for(grid, reach_of);
+    self->clear_from = 0;
+    self->dear = 1;
     self->insists = self->ends_at_start = false;
     memset(self->count, 0, sizeof self->count);
     self->at = self->cells = 0;
-    self->limit = AISLE_TOGO_NONE - DIAGONAL;
+    self->limit = COST_MAX;
     self->start = cell_of(self, start);
     self->goal = cell_of(self, goal);
     reach(self, self->goal, 0);
+}
+
+void aisle_togo_keep_clear(aisle_togo *self, double clear, uint32_t dear) {
+    AISLE_ASSERT(dear >= 1U && dear <= AISLE_TOGO_DEAR_MAX);
+    self->clear_from = field_for(self->grid, clear);
+    self->dear = dear;
 }
 
 void aisle_togo_end_at_start(aisle_togo *self) {
@@ -116,17 +130,15 @@ static bool holds_centre(const aisle_togo *self, uint32_t ix, uint32_t iy) {
     return self->grid->field[(size_t)y * lattice->w + x] >= self->open_from || iy * self->w + ix == self->start;
 }
 
-static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
+// Does any of its planning cells have this field value or more?
+static bool holds(const aisle_togo *self, uint32_t ix, uint32_t iy, uint32_t least) {
     const aisle_lattice *lattice = &self->grid->lattice;
-    if (self->insists) {
-        return holds_centre(self, ix, iy);
-    }
     uint32_t x0 = ix * self->stride, x1 = x0 + self->stride < lattice->w ? x0 + self->stride : lattice->w;
     uint32_t y0 = iy * self->stride, y1 = y0 + self->stride < lattice->h ? y0 + self->stride : lattice->h;
     for (uint32_t y = y0; y < y1; y++) {
         const uint16_t *row = self->grid->field + (size_t)y * lattice->w;
         for (uint32_t x = x0; x < x1; x++) {
-            if (row[x] >= self->open_from) {
+            if (row[x] >= least) {
                 return true;
             }
         }
@@ -134,16 +146,25 @@ static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
     return false;
 }
 
+static bool is_open(const aisle_togo *self, uint32_t ix, uint32_t iy) {
+    return self->insists ? holds_centre(self, ix, iy) : holds(self, ix, iy, self->open_from);
+}
+
+// Of a step to the cell.
+static uint32_t price(const aisle_togo *self, uint32_t ix, uint32_t iy, uint32_t step) {
+    return self->dear == 1U || holds(self, ix, iy, self->clear_from) ? step : step * self->dear;
+}
+
 static void expand(aisle_togo *self, uint32_t cell) {
     uint32_t ix = cell % self->w, iy = cell / self->w;
     for (int k = 0; k < 8; k++) {
         uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
-        uint32_t cost = self->at + (k < 4 ? STRAIGHT : DIAGONAL);
-        if (nx >= self->w || ny >= self->h || cost >= self->cost[ny * self->w + nx]) {
+        uint32_t step = k < 4 ? STRAIGHT : DIAGONAL;
+        if (nx >= self->w || ny >= self->h || self->at + step >= self->cost[ny * self->w + nx]) {
             continue;
         }
         if (is_open(self, nx, ny)) {
-            reach(self, ny * self->w + nx, cost);
+            reach(self, ny * self->w + nx, self->at + price(self, nx, ny, step));
         } else {
             self->cost[ny * self->w + nx] = 0; // closed: not looked at again
         }
@@ -174,7 +195,7 @@ aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) 
         self->cells++;
         if (self->cost[cell] == self->at) {
             expand(self, cell);
-            if (cell == self->start && self->limit == AISLE_TOGO_NONE - DIAGONAL) {
+            if (cell == self->start && self->limit == COST_MAX) {
                 double beyond = WORTH_SHARE * (double)self->at + STRAIGHT * WORTH_MORE / self->size;
                 beyond = self->ends_at_start ? (double)self->at : beyond;
                 self->limit = (uint32_t)aisle_min(beyond, (double)self->limit);

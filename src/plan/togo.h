@@ -4,6 +4,7 @@
 // hold the disc (optimistic, so that no place the body can be in is closed), steps of 5 and 7 to the side and diagonally
 // (Borgefors 1986, the chamfer 5-7-11 without its last step): at most 8 % too long. Dijkstra's search with a ring of
 // buckets (Dial 1969), outwards from the goal until the start is reached and as far beyond as is asked for.
+// Cells where the disc comes near to something may be made dearer, so that what is led keeps off walls where that is cheaper.
 // Places may be closed besides what the grid says (movers that stand in the way): cells whose centre is in them.
 // A guide for searches: neither a bound nor a proof.
 // Memory: 2 bytes a cell of its own, one for 16 planning cells, and 0.5 MiB. Time: O(cells reached), sliced.
@@ -12,10 +13,11 @@
 
 #include "plan/space.h"
 
-#define AISLE_TOGO_SIDE 0.2     // m
-#define AISLE_TOGO_SHARE 16U    // planning cells for one of its cells
-#define AISLE_TOGO_RING 8U      // buckets: more than the dearest step
-#define AISLE_TOGO_QUEUE 16384U // cells in one of them, at most
+#define AISLE_TOGO_SIDE 0.2    // m
+#define AISLE_TOGO_SHARE 16U   // planning cells for one of its cells
+#define AISLE_TOGO_DEAR_MAX 9U // times as dear a cell may be
+#define AISLE_TOGO_RING 64U    // buckets: more than the dearest step
+#define AISLE_TOGO_QUEUE 2048U // cells in one of them, at most
 
 typedef struct aisle_togo {
     const aisle_grid *grid;
@@ -27,6 +29,7 @@ typedef struct aisle_togo {
     double size;                     // m, side of a cell
     bool insists, ends_at_start;     // see below
     uint32_t open_from;              // least field value of an open planning cell
+    uint32_t clear_from, dear;       // below that field value a step is so many times as dear
     uint32_t at, limit, start, goal; // cost under way; where it ends; the cells of start and goal
     uint32_t cells;                  // looked at
 } aisle_togo;
@@ -42,6 +45,10 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach, ai
 // After start(): ends as soon as all is known that is no farther from the goal than the start; else it goes on to half as far
 // again and 10 m.
 void aisle_togo_end_at_start(aisle_togo *self);
+
+// After start(): steps to cells where a disc of `clear` (m) finds no room are `dear` times as dear, in
+// [1, AISLE_TOGO_DEAR_MAX]. Costs are then metres of clear way.
+void aisle_togo_keep_clear(aisle_togo *self, double clear, uint32_t dear);
 
 // After start(): only cells are open in whose centre the disc has room enough to go straight to the neighbours' centres,
 // surely, and the start's own. What such cells connect is connected; narrower ways are not seen.

@@ -220,6 +220,67 @@ static void test_directed_zones_are_obeyed_by_every_drive(void) {
     TEST_ASSERT_EQUAL(16, found);
 }
 
+// Metres driven whose gap is below `clear`, by the judge's own gaps 5 cm apart; turns on the spot count nothing.
+static double near_metres(double clear) {
+    double sum = 0.0;
+    for (uint32_t i = 1; i < count; i++) {
+        const double steps = ceil(hypot(w[i].x - w[i - 1U].x, w[i].y - w[i - 1U].y) / 0.05);
+        aisle_pose2 before = place_on(&w[i - 1U], &w[i], 0.0L);
+        for (double k = 1.0; k <= steps; k += 1.0) {
+            aisle_pose2 at = place_on(&w[i - 1U], &w[i], (long double)(k / steps));
+            sum += hall_body_gap(at) < clear ? hypot(at.x - before.x, at.y - before.y) : 0.0;
+            before = at;
+        }
+    }
+    return sum;
+}
+
+static double driven(void) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < manoeuvre.moves; i++) {
+        sum += fabs(manoeuvre.move[i].length);
+    }
+    return sum;
+}
+
+static void test_where_near_metres_are_dear_there_are_fewer_of_them_for_what_they_save(void) {
+    int found = 0;
+    double near = 0.0, near_eased = 0.0, cost = 0.0, cost_eased = 0.0;
+    for (int k = 0; k < 12; k++) {
+        const double aisle = 1.6 + 0.4 * (k % 3);
+        forklift(k < 6 ? 0.0F : 0.6666F);
+        rack_hall(aisle);
+        aisle_manoeuvre_request request = request_of(in_aisle(0, aisle, 7.0, 0.5 * PI),
+                                                     in_aisle(k % 2 + 2, aisle, 7.0, k % 4 < 2 ? 0.5 * PI : -0.5 * PI));
+        TEST_ASSERT_EQUAL(AISLE_OK, search(&request, 1000));
+        near += near_metres(0.5);
+        cost += driven() + 4.0 * near_metres(0.5);
+        request.clear = 0.5;
+        request.dear = 5;
+        if (search(&request, 1000) == AISLE_OK) {
+            judge(&request);
+            near_eased += near_metres(0.5);
+            cost_eased += driven() + 4.0 * near_metres(0.5);
+            found++;
+        }
+    }
+    TEST_ASSERT_EQUAL(12, found);
+    TEST_ASSERT_TRUE(near_eased < 0.85 * near);
+    TEST_ASSERT_TRUE(cost_eased < 0.9 * cost);
+}
+
+static void test_a_search_ends_with_the_units_it_is_given(void) {
+    hall_begin(12.0, 8.0);
+    hall_add(0.0, 0.0, 5.0, 3.45); // as below
+    hall_add(6.15, 0.0, 12.0, 8.0);
+    hall_add(0.0, 4.6, 6.15, 8.0);
+    open_hall();
+    aisle_manoeuvre_request request = request_of((aisle_pose2){1.0, 4.025, 0.0}, (aisle_pose2){5.575, 2.5, -0.5 * PI});
+    request.units = 3000;
+    TEST_ASSERT_EQUAL(AISLE_PARTIAL, search(&request, 100));
+    TEST_ASSERT_TRUE(spent >= 3000U && spent < 6000U);
+}
+
 static void test_where_there_is_none_it_says_so_within_its_units(void) {
     hall_begin(12.0, 8.0);
     hall_add(0.0, 0.0, 5.0, 3.45); // aisles of 1.15 m with a right angle
@@ -261,6 +322,8 @@ int main(void) {
     RUN_TEST(test_out_of_a_dead_end_it_goes_backwards_and_only_there);
     RUN_TEST(test_in_the_open_it_is_about_as_short_as_its_ends_allow);
     RUN_TEST(test_directed_zones_are_obeyed_by_every_drive);
+    RUN_TEST(test_where_near_metres_are_dear_there_are_fewer_of_them_for_what_they_save);
+    RUN_TEST(test_a_search_ends_with_the_units_it_is_given);
     RUN_TEST(test_where_there_is_none_it_says_so_within_its_units);
     RUN_TEST(test_slices_change_nothing);
     RUN_TEST(test_waypoints_that_do_not_fit_are_none);

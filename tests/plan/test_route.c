@@ -362,6 +362,39 @@ static void test_legs_go_on_with_the_heading_they_end_with(void) {
     TEST_ASSERT_TRUE((answer.waypoints[answer.num_waypoints - 1].flags & AISLE_WAYPOINT_REVERSE) != 0);
 }
 
+// Cars that have to manoeuvre at both ends, round a block with room enough to keep off it and off the walls.
+static void test_a_cars_safest_and_fastest_ways_keep_off_what_its_shortest_one_brushes(void) {
+    hall_rectangle(2.0, 0.9, 0.05F);
+    hall_vehicle.curvature_max = 0.66;
+    hall_begin(18.0, 14.0);
+    hall_add(6.0, 5.0, 12.0, 9.0);
+    open_hall();
+    for (int k = 0; k < 4; k++) {
+        float risk[2], duration[2];
+        static const int8_t objectives[3] = {AISLE_OPTIONS_SHORTEST, AISLE_OPTIONS_SAFEST, AISLE_OPTIONS_FASTEST};
+        for (int i = 0; i < 3; i++) {
+            ask(AISLE_OPTIONS_AUTO, 4.0, 7.0, 14.0, 6.0 + 0.5 * k);
+            request.options.objective = objectives[i];
+            request.start.tolerance_theta = request.goals[0].tolerance_theta = 0.0F;
+            request.start.theta = k % 2 == 0 ? 3.0 : -1.5;
+            request.goals[0].theta = k < 2 ? 1.6 : 3.1;
+            (void)plan(1000);
+            (void)proof();
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, request.goals[0].theta, answer.waypoints[answer.num_waypoints - 1].theta);
+            if (i == 0) {
+                risk[0] = answer.risk;
+                duration[0] = answer.duration;
+            } else if (i == 1) {
+                risk[1] = answer.risk;
+            } else {
+                duration[1] = answer.duration;
+            }
+        }
+        TEST_ASSERT_TRUE(risk[1] < 0.5F * risk[0]);
+        TEST_ASSERT_TRUE(duration[1] < 0.9F * duration[0]);
+    }
+}
+
 static void test_a_curve_wide_enough_is_driven_without_turns_on_the_spot(void) {
     hall_vehicle.curvature_max = 0.8;
     hall_begin(20.0, 16.0);
@@ -484,6 +517,7 @@ int main(void) {
     RUN_TEST(test_a_turn_there_is_no_room_for_is_kinematic_at_its_goal);
     RUN_TEST(test_headings_that_leave_no_room_to_turn_are_reached_by_turning_elsewhere);
     RUN_TEST(test_legs_go_on_with_the_heading_they_end_with);
+    RUN_TEST(test_a_cars_safest_and_fastest_ways_keep_off_what_its_shortest_one_brushes);
     RUN_TEST(test_a_curve_wide_enough_is_driven_without_turns_on_the_spot);
     RUN_TEST(test_the_second_leg_is_named_where_it_fails);
     RUN_TEST(test_a_full_open_list_is_a_limit);

@@ -107,6 +107,33 @@ static void test_a_map_of_more_cells_than_it_holds_is_seen_coarser(void) {
     TEST_ASSERT_DOUBLE_WITHIN(0.15 * way, way, aisle_togo_at(&togo, aisle_vec2_of(2.0, 2.0)));
 }
 
+// Boxes on both sides leave a lane of 1.6 m along y = 6; the way above them is longer and clear.
+static void test_dear_steps_are_gone_round_where_that_is_cheaper(void) {
+    static const uint32_t dears[4] = {1, 2, 5, AISLE_TOGO_DEAR_MAX};
+    static const double radius = 0.5, clear = 1.2, lane = 10.0;
+    const aisle_vec2 start = {2.0, 6.0}, goal = {18.0, 6.0};
+    hall_begin(20.0, 20.0);
+    hall_add(5.0, 2.0, 5.0 + lane, 5.2);
+    hall_add(5.0, 6.8, 5.0 + lane, 8.0);
+    open_hall();
+    for (int i = 0; i < 4; i++) {
+        const double through = 16.0 + (dears[i] - 1.0) * lane, round = 2.0 * hypot(3.0, 3.2) + lane;
+        uint32_t spent = 0;
+        aisle_status st;
+        aisle_togo_start(&togo, aisle_layout_grid(&hall_layout), radius, start, goal);
+        aisle_togo_keep_clear(&togo, clear, dears[i]);
+        while ((st = aisle_togo_step(&togo, 1000, &spent)) == AISLE_BUSY) {
+        }
+        TEST_ASSERT_EQUAL(AISLE_OK, st);
+        const double told = aisle_togo_at(&togo, start), best = aisle_min(through, round);
+        TEST_ASSERT_TRUE(told >= best - 0.6 && told <= 1.09 * best + 2.0);
+        if (dears[i] < AISLE_TOGO_DEAR_MAX) { // the search came there: half the lane, whichever way is best
+            const double inside = aisle_togo_at(&togo, aisle_vec2_of(10.0, 6.0));
+            TEST_ASSERT_DOUBLE_WITHIN(1.0 + 0.5 * dears[i], 5.0 * dears[i] + 3.0, inside);
+        }
+    }
+}
+
 static aisle_status search_closed(aisle_vec2 a, aisle_vec2 b, double radius) {
     const aisle_vec2 start = {2.0, 2.0}, goal = {18.0, 3.0};
     aisle_status st;
@@ -190,6 +217,7 @@ int main(void) {
     RUN_TEST(test_what_the_disc_cannot_reach_is_infinite);
     RUN_TEST(test_slices_change_nothing);
     RUN_TEST(test_a_map_of_more_cells_than_it_holds_is_seen_coarser);
+    RUN_TEST(test_dear_steps_are_gone_round_where_that_is_cheaper);
     RUN_TEST(test_places_closed_are_gone_round);
     RUN_TEST(test_a_shut_way_and_a_shut_goal_are_not_reached);
     RUN_TEST(test_insisting_every_step_between_centres_has_the_room);

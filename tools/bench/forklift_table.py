@@ -9,7 +9,7 @@ in contact are drawn on purpose. "solved": paths of those that have a way; "beyo
 of what has a way; "right": of what has none, "cause": those of them, and of the undecided, that told the right cause:
 START_OCCUPIED, GOAL_OCCUPIED, TOO_NARROW or NO_PATH where the disc inside the body does not get through, KINEMATIC where
 it does; "open": refusals of undecided ones; "false": paths of what has none; "unclear": paths that are not clear or break
-a limit when looked at every centimetre (aisle_tools/check.py). ratio: length over the planner's proved bound.
+a limit when looked at every centimetre (aisle_tools/check.py). ratio: length over the planner's proved bound; s and risk: duration of a path and its risk by length, in the mean.
 
 The oracle's verdicts are stored in tests/data/racks.json, since they take half a minute a hall; --store makes those that
 are missing or do not belong to the hall as drawn. --check: exit 1 on a path that is unclear or false, on a wrong cause,
@@ -84,7 +84,7 @@ def hall_of(i: int) -> tuple[rack_halls.Hall, float]:
 
 
 def new_row() -> dict:
-    return {k: [] for k in ("ms", "ratio", "aisle", "units")} | dict.fromkeys(COUNTS, 0)
+    return {k: [] for k in ("ms", "ratio", "aisle", "units", "duration", "exposure", "length")} | dict.fromkeys(COUNTS, 0)
 
 
 def oracle_lines(hall: rack_halls.Hall, legs: list[query.Leg], mode: str) -> str:
@@ -172,6 +172,9 @@ def judge(hall: rack_halls.Hall, leg: query.Leg, verdict: str, answer: offline.A
     row["has a way"] += verdict == WAY
     if answer.is_path:
         row["ratio"].append(answer.reply.length / max(answer.reply.length_bound, 0.5))
+        row["duration"].append(answer.reply.duration)
+        row["length"].append(answer.reply.length)
+        row["exposure"].append(answer.reply.risk * answer.reply.length)
         row["unclear"] += bool(answer.faults)
         row[{WAY: "solved", UNDECIDED: "beyond"}.get(verdict, "false")] += 1
         if verdict in (NONE, CONTACT):
@@ -193,7 +196,7 @@ def write_failures(args: argparse.Namespace, failures: list[str]) -> None:
 
 
 def print_rows(rows: dict) -> bool:
-    print(f"{'vehicle':<36} {'aisles, m':>11} " + " ".join(f"{k:>9}" for k in COUNTS) + "  ratio     ms  p99 ms  units")
+    print(f"{'vehicle':<36} {'aisles, m':>11} " + " ".join(f"{k:>9}" for k in COUNTS) + "  ratio      s   risk     ms  p99 ms  units")
     everything = new_row()
     for (name, _), row in sorted(rows.items()):
         print_row(name, row)
@@ -210,7 +213,8 @@ def print_row(name: str, row: dict) -> None:
     print(
         f"{name:<36} {min(row['aisle']):5.2f}-{max(row['aisle']):5.2f} "
         + " ".join(f"{row[k]:9d}" for k in COUNTS)
-        + f" {offline.median(row['ratio']):6.3f} {offline.median(ms):6.2f} {ms[math.ceil(0.99 * len(ms)) - 1]:7.1f}"
+        + f" {offline.median(row['ratio']):6.3f} {sum(row['duration']) / max(1, len(row['duration'])):6.1f}"
+        f" {sum(row['exposure']) / max(1e-9, sum(row['length'])):6.3f} {offline.median(ms):6.2f} {ms[math.ceil(0.99 * len(ms)) - 1]:7.1f}"
         f" {offline.median(row['units']):6.0f}"
     )
 
