@@ -149,6 +149,8 @@ typedef enum aisle_counter {
     AISLE_COUNTER_WAIT_MS,          // of the last one weighed: ms to the next goal by waiting or slowing down,
     AISLE_COUNTER_ROUND_MS,         // and by going round
     AISLE_COUNTER_CACHE_REPAIRED,   // among the misses: made of the free pieces of an answer that was remembered
+    AISLE_COUNTER_ROADMAPS,         // roadmaps of PRM begun from nothing
+    AISLE_COUNTER_ROADMAP_REPAIRS,  // and repaired where a layout had changed
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

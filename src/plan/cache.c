@@ -422,22 +422,8 @@ static double detour_by_edge(aisle_vec2 a, aisle_vec2 b, double lo, double hi) {
     return aisle_vec2_distance(a, p) + aisle_vec2_distance(p, b);
 }
 
-// Does the straight way from a to b meet the box?
-static bool meets(aisle_aabb box, aisle_vec2 a, aisle_vec2 b) {
-    const aisle_vec2 d = aisle_vec2_sub(b, a), n = aisle_vec2_of(-d.y, d.x);
-    const aisle_aabb way = {{aisle_min(a.x, b.x), aisle_min(a.y, b.y)}, {aisle_max(a.x, b.x), aisle_max(a.y, b.y)}};
-    const aisle_vec2 corner[4] = {box.lo, {box.hi.x, box.lo.y}, box.hi, {box.lo.x, box.hi.y}};
-    bool left = false, right = false;
-    for (uint32_t i = 0; i < 4U; i++) {
-        const double side = aisle_vec2_dot(aisle_vec2_sub(corner[i], a), n);
-        left = left || side >= 0.0;
-        right = right || side <= 0.0;
-    }
-    return left && right && aisle_aabb_overlap(box, way);
-}
-
 double aisle_cache_detour(aisle_aabb box, aisle_vec2 a, aisle_vec2 b) {
-    if (meets(box, a, b)) {
+    if (aisle_aabb_meets(box, a, b)) {
         return aisle_vec2_distance(a, b);
     }
     double least =

@@ -67,6 +67,8 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits) {
     row(self, arena, &from, "search and paths");
     aisle_route_carve_cache(route, arena, limits);
     row(self, arena, &from, "remembered paths");
+    aisle_route_carve_roadmap(route, arena, limits);
+    row(self, arena, &from, "roadmap");
     void *queue = aisle_arena_take(arena, limits->requests, sizeof(aisle_request));
     row(self, arena, &from, "requests");
     carve_answers(self, arena);
@@ -201,6 +203,8 @@ static void count_route(aisle_planner *self) {
     counters[AISLE_COUNTER_VERIFY_INTERVALS] += route->intervals;
     counters[AISLE_COUNTER_WORK_UNITS] += route->spent;
     counters[AISLE_COUNTER_OPEN_NODES_MAX] = route->seed.search.open_used_max;
+    counters[AISLE_COUNTER_ROADMAPS] = route->keep.begun + route->sample.copy.begun;
+    counters[AISLE_COUNTER_ROADMAP_REPAIRS] = route->keep.repairs + route->sample.copy.repairs;
     count_cache(self);
     counters[AISLE_COUNTER_CCD_CALLS] += route->collide.calls;
     if (route->collide.support_max > counters[AISLE_COUNTER_CCD_SUPPORT_MAX]) {

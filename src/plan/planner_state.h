@@ -14,7 +14,7 @@
 #include "world/movers.h"
 
 #define AISLE_REFUSAL_BYTES 1024U // of an encoded path_t with at most AISLE_ROUTE_TOLD_MAX waypoints
-#define AISLE_MEMORY_ROWS 8U
+#define AISLE_MEMORY_ROWS 9U
 
 typedef struct aisle_outgoing { // a path_t waiting to be pulled
     const uint8_t *bytes;

@@ -15,6 +15,8 @@ typedef union part {
     aisle_swarm swarm;
     aisle_paper_swarm paper;
     aisle_compose compose;
+    aisle_roadmap_keep keep;
+    aisle_roadmap_search ask;
 } part;
 
 #define PART(self, instead, name) ((self) != NULL ? &(self)->name : &(instead)->name)
@@ -29,17 +31,34 @@ static void carve_sample(aisle_route *self, aisle_arena *arena, const aisle_limi
     }
 }
 
+static uint32_t roadmap_draws(const aisle_limits *limits) {
+    const uint32_t share = limits->cells / AISLE_ROUTE_SAMPLE_CELLS;
+    return share > AISLE_ROUTE_ROADMAP_DRAWS ? AISLE_ROUTE_ROADMAP_DRAWS : share;
+}
+
+// What a question to a roadmap takes, and a goal list's copy of it.
+static void carve_ask(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
+    const uint32_t draws = roadmap_draws(limits);
+    aisle_roadmap_keep_carve(self != NULL ? &self->sample.copy : &instead->keep, arena, draws);
+    aisle_roadmap_search_carve(self != NULL ? &self->sample.ask : &instead->ask, arena, draws);
+    void *way = aisle_arena_take(arena, ((size_t)draws + 2U) * AISLE_ROADMAP_KEEP_DIM, sizeof(double));
+    if (self != NULL) {
+        self->sample.way = (double *)way;
+    }
+}
+
 // No leg is searched two ways at a time: the other searches lie where the grid search does. Nor
 // is anything searched while an order is computed.
 static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_arena shared[5] = {*arena, *arena, *arena, *arena, *arena};
+    aisle_arena shared[6] = {*arena, *arena, *arena, *arena, *arena, *arena};
     aisle_tangent_carve(PART(self, instead, tangent), &shared[0], limits);
     aisle_manoeuvre_carve(PART(self, instead, manoeuvre), &shared[1], limits);
     aisle_tour_carve_shared(PART(self, instead, tour), &shared[2]);
     aisle_local_carve(PART(self, instead, local), &shared[3], limits->cells);
     carve_sample(self, &shared[4], limits);
+    carve_ask(self, instead, &shared[5], limits);
     aisle_seed_carve(PART(self, instead, seed), arena, limits);
-    for (uint32_t i = 0; i < 5U; i++) {
+    for (uint32_t i = 0; i < 6U; i++) {
         arena->overflow = arena->overflow || shared[i].overflow;
         arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
     }
@@ -88,6 +107,11 @@ void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits
 void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
     aisle_cache measured = {0};
     aisle_cache_carve(self != NULL ? &self->cache : &measured, arena, limits);
+}
+
+void aisle_route_carve_roadmap(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+    aisle_roadmap_keep measured;
+    aisle_roadmap_keep_carve(self != NULL ? &self->keep : &measured, arena, roadmap_draws(limits));
 }
 
 // Header of the answer: everything but waypoints and sums.

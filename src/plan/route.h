@@ -28,6 +28,11 @@
 // trees; a star that this ends before its samples is flagged by cause BUDGET beside the path. No way: WHY, for a proof, else
 // BUDGET. AUTO asks RRT_ADAPTIVE in the place of a KINEMATIC or BUDGET refusal by WHY: where nothing else found a way and none
 // was proved away.
+// PRM: the same with a roadmap (roadmap.h), asked for each leg, by A*; its edges are tested when a search comes to them. It
+// begins with AISLE_ROUTE_ROADMAP_FIRST draws, or options.num_samples, and where it does not join a leg's ends doubles them, up
+// to what fits. A query's stays (roadmap_keep.h): the next one only asks, after a repair where patches have changed the layout. A
+// goal list works on a copy and leaves nothing. Objective PAPER: the paper's form, of AISLE_ROUTE_ROADMAP_PLAIN draws or
+// options.num_samples, all edges tested first, Dijkstra's search, and no more draws where it fails.
 // PSO_LOCAL is the local swarm's way alone (local.h), with movers if aisle_route_go_round() gave some; its failure proves
 // nothing (BLOCKED_BY the mover nearest to where it got to, else BUDGET).
 // Zones (zones.h): tangent ways must obey DIRECTED ones, else the leg is the grid's; PENALTY zones add what they cost to
@@ -61,6 +66,7 @@
 #include "plan/one_way.h"
 #include "plan/opening.h"
 #include "plan/paper_swarm.h"
+#include "plan/roadmap_keep.h"
 #include "plan/seed.h"
 #include "plan/swarm.h"
 #include "plan/tangent.h"
@@ -76,6 +82,9 @@
 #define AISLE_ROUTE_SAMPLE_NODES 32768U // of a tree, at most,
 #define AISLE_ROUTE_SAMPLE_CELLS 64U    // and of the planning grid by which they are counted
 #define AISLE_ROUTE_SAMPLE_DIM 3U
+#define AISLE_ROUTE_ROADMAP_DRAWS 3584U // of a roadmap, at most, counted by cells likewise
+#define AISLE_ROUTE_ROADMAP_FIRST 448U
+#define AISLE_ROUTE_ROADMAP_PLAIN 1000U
 #define AISLE_ROUTE_ROUND_UNITS 60000U // work units of a way round; who finds none by then waits
 #define AISLE_ROUTE_NONE UINT32_MAX
 #define AISLE_ROUTE_CREEP_SPARE 2e-3 // m, what is told of a clearance may be lower than the truth by less
@@ -171,6 +180,8 @@ typedef struct aisle_route_repair { // of the answer in `decoded`
 
 typedef enum aisle_route_sample_phase {
     AISLE_ROUTE_SAMPLE_TREE,   // grows
+    AISLE_ROUTE_SAMPLE_MAP,    // a roadmap is built, or repaired, or grows
+    AISLE_ROUTE_SAMPLE_ASK,    // and asked
     AISLE_ROUTE_SAMPLE_PULL,   // places on its path that are seen from earlier ones are left out
     AISLE_ROUTE_SAMPLE_SHORTEN // the same of moves
 } aisle_route_sample_phase;
@@ -179,10 +190,14 @@ typedef struct aisle_route_sample { // a leg's search by sampling
     aisle_rrt tree;
     aisle_vehicle_space configurations;
     aisle_route_sample_phase phase;
-    uint32_t *path; // [capacity of the tree + 1] nodes
-    uint32_t path_count, at;
-    uint32_t limit; // of the request's units, that this leg's search ends at
-    bool is_spare;  // tried because nothing else found a way: the reason for that is told if this finds none, too
+    uint32_t *path;          // [capacity of the tree + 1] nodes
+    aisle_roadmap_keep copy; // a goal list's, for its legs
+    aisle_roadmap_search ask;
+    double start[AISLE_CSPACE_DIM_MAX], goal[AISLE_CSPACE_DIM_MAX]; // of the leg
+    double *way;             // [(capacity of the roadmap + 2) * dim] configurations
+    uint32_t path_count, at; // of the path or the way
+    uint32_t limit;          // of the request's units, that this leg's search ends at
+    bool is_spare; // tried because nothing else found a way: the reason for that is told if this finds none, too
 } aisle_route_sample;
 
 typedef struct aisle_route {
@@ -214,6 +229,7 @@ typedef struct aisle_route {
     aisle_paper_swarm paper;
     aisle_local local;
     aisle_route_sample sample;
+    aisle_roadmap_keep keep;
     const aisle_movers *movers; // to go round, or NULL; the vehicle is at the start
     int64_t movers_us;          // then,
     bool in_motion;             // and does not stop there
@@ -257,6 +273,7 @@ typedef struct aisle_route {
 // `self` may be NULL, to measure only: then no pointer is kept, and no struct of this size is needed.
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
+void aisle_route_carve_roadmap(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 
 // Begins. `head` holds the ids and times of the answer (boot_id, revisions, t0_utime, ...); its waypoints are not read.
 // path_revision of the first path told is head's, of the improved one the next.

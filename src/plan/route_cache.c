@@ -99,6 +99,7 @@ void aisle_route_remember(aisle_route *self) {
 }
 
 void aisle_route_layout_changed(aisle_route *self, const aisle_layout *layout) {
+    aisle_roadmap_keep_note(&self->keep, layout);
     aisle_cache_change_begin(&self->cache, layout, self->decoded, self->spare.bytes);
 }
 

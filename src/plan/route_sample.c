@@ -3,13 +3,18 @@
 #include "plan/route_stages.h"
 
 #include <math.h>
+#include <string.h>
 
 #define SHARE 2U     // half of the budget is the trees', all legs' together; the rest builds and proves
 #define HEADINGS 16U // tried at a stop where any will do
 
 bool aisle_route_is_sampling(const aisle_route *self) {
     const int8_t planner = self->request.options.planner;
-    return planner >= AISLE_OPTIONS_RRT && planner <= AISLE_OPTIONS_RRT_STAR_ADAPTIVE;
+    return planner >= AISLE_OPTIONS_RRT && planner <= AISLE_OPTIONS_PRM;
+}
+
+static bool is_by_roadmap(const aisle_route *self) {
+    return self->request.options.planner == AISLE_OPTIONS_PRM;
 }
 
 // ---- the ends
@@ -27,7 +32,7 @@ static double heading_at(aisle_route *self, aisle_vec2 p, double theta, bool is_
     return is_free ? guess : theta; // not free: then no motion is
 }
 
-static void ends_of(aisle_route *self, aisle_rrt_config *cfg) {
+static void find_ends(aisle_route *self) {
     const aisle_leg *leg = &self->legs[self->leg];
     const aisle_goal_msg *goal = &self->request.goals[self->leg];
     const aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg)), to = aisle_route_place(goal);
@@ -38,11 +43,11 @@ static void ends_of(aisle_route *self, aisle_rrt_config *cfg) {
         start_theta = heading_at(self, from, leg->heading, leg->heading_is_free, course);
         goal_theta = heading_at(self, to, goal->theta, aisle_goal_heading_is_free(goal), course);
     }
-    aisle_vehicle_space_of_pose(configurations, (aisle_pose2){from.x, from.y, start_theta}, cfg->start);
-    aisle_vehicle_space_of_pose(configurations, (aisle_pose2){to.x, to.y, goal_theta}, cfg->goal);
+    aisle_vehicle_space_of_pose(configurations, (aisle_pose2){from.x, from.y, start_theta}, self->sample.start);
+    aisle_vehicle_space_of_pose(configurations, (aisle_pose2){to.x, to.y, goal_theta}, self->sample.goal);
 }
 
-// ---- TREE
+// ---- TREE, MAP
 
 static aisle_rrt_config config_of(const aisle_route *self) {
     const aisle_options_msg *options = &self->request.options;
@@ -64,19 +69,30 @@ static uint32_t limit_of(const aisle_route *self) {
 
 static void begin_tree(aisle_route *self) {
     aisle_route_sample *sample = &self->sample;
+    aisle_rrt_config cfg = config_of(self);
+    memcpy(cfg.start, sample->start, sizeof cfg.start);
+    memcpy(cfg.goal, sample->goal, sizeof cfg.goal);
+    const aisle_status st = aisle_rrt_start(&sample->tree, &cfg);
+    AISLE_ASSERT(st == AISLE_OK);
+    sample->phase = AISLE_ROUTE_SAMPLE_TREE;
+}
+
+static void begin_search(aisle_route *self) {
+    aisle_route_sample *sample = &self->sample;
     aisle_leg *leg = &self->legs[self->leg];
     const bool has_heading = aisle_route_has_heading(self);
     leg->mode = has_heading ? AISLE_SPACE_ALONG : AISLE_SPACE_FREE_TURN;
     aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
     aisle_vehicle_space_begin(&sample->configurations, &self->space,
                               has_heading ? AISLE_VEHICLE_SPACE_POSE : AISLE_VEHICLE_SPACE_PLACE);
-    aisle_rrt_config cfg = config_of(self);
-    ends_of(self, &cfg);
-    const aisle_status st = aisle_rrt_start(&sample->tree, &cfg);
-    AISLE_ASSERT(st == AISLE_OK);
-    sample->phase = AISLE_ROUTE_SAMPLE_TREE;
+    find_ends(self);
     sample->limit = sample->is_spare ? self->budget - (self->budget - self->spent) / 2U : limit_of(self);
     self->stage = AISLE_ROUTE_SAMPLE;
+    if (is_by_roadmap(self)) {
+        aisle_route_begin_roadmap(self);
+    } else {
+        begin_tree(self);
+    }
 }
 
 void aisle_route_begin_sample_leg(aisle_route *self) {
@@ -91,13 +107,14 @@ void aisle_route_begin_sample_leg(aisle_route *self) {
     aisle_route_begin_zones(self);
     aisle_route_take_heading(self);
     self->sample.is_spare = false;
-    begin_tree(self);
+    begin_search(self);
 }
 
 void aisle_route_begin_sample(aisle_route *self) {
     self->leg = 0;
     self->point_count = 0;
     self->piece_count = 0;
+    self->sample.copy.is_begun = false;
     aisle_route_begin_sample_leg(self);
 }
 
@@ -108,12 +125,12 @@ bool aisle_route_begin_spare(aisle_route *self) {
     }
     self->legs[self->leg].is_sampled = true;
     self->sample.is_spare = true;
-    begin_tree(self);
+    begin_search(self);
     return true;
 }
 
 // No way was found. The reason that is known is told; one that sampling alone was asked for gets WHY to look for a proof.
-static aisle_status no_way(aisle_route *self) {
+aisle_status aisle_route_no_sampled_way(aisle_route *self) {
     const aisle_goal_msg *goal = &self->request.goals[self->leg];
     if (self->sample.is_spare) {
         self->legs[self->leg].is_sampled = false;
@@ -135,14 +152,16 @@ static aisle_status no_way(aisle_route *self) {
 
 static aisle_status too_long(aisle_route *self) {
     if (self->sample.is_spare) {
-        return no_way(self);
+        return aisle_route_no_sampled_way(self);
     }
     const aisle_vec2 place = aisle_route_place(&self->request.goals[self->leg]);
     return aisle_route_give_way_up(self, AISLE_STATUS_LIMIT, 0, (double)self->sample.path_count, place);
 }
 
 static const double *on_path(const aisle_route *self, uint32_t i) {
-    return aisle_rrt_at(&self->sample.tree, self->sample.path[i]);
+    const aisle_route_sample *sample = &self->sample;
+    return is_by_roadmap(self) ? sample->way + (size_t)i * sample->configurations.cspace.dim
+                               : aisle_rrt_at(&sample->tree, sample->path[i]);
 }
 
 static aisle_vec2 place_on_path(const aisle_route *self, uint32_t i) {
@@ -168,10 +187,8 @@ static bool take_moves(aisle_route *self) {
     return true;
 }
 
-static aisle_status begin_pull(aisle_route *self) {
+aisle_status aisle_route_take_sampled_way(aisle_route *self) {
     aisle_route_sample *sample = &self->sample;
-    sample->path_count = aisle_rrt_path(&sample->tree, sample->path, sample->tree.capacity + 1U);
-    self->nodes += (int64_t)sample->tree.near.count;
     if (sample->configurations.kind == AISLE_VEHICLE_SPACE_POSE) {
         sample->phase = AISLE_ROUTE_SAMPLE_SHORTEN;
         return take_moves(self) ? AISLE_BUSY : too_long(self);
@@ -244,13 +261,22 @@ static aisle_status grow(aisle_route *self, uint32_t units) {
     }
     const bool reached = aisle_rrt_cost(&sample->tree) < (double)INFINITY;
     self->is_cut = self->is_cut || (st == AISLE_BUSY && reached);
-    return reached ? begin_pull(self) : no_way(self);
+    if (!reached) {
+        return aisle_route_no_sampled_way(self);
+    }
+    sample->path_count = aisle_rrt_path(&sample->tree, sample->path, sample->tree.capacity + 1U);
+    self->nodes += (int64_t)sample->tree.near.count;
+    return aisle_route_take_sampled_way(self);
 }
 
 aisle_status aisle_route_step_sample(aisle_route *self, uint32_t units) {
     switch (self->sample.phase) {
     case AISLE_ROUTE_SAMPLE_TREE:
         return grow(self, units);
+    case AISLE_ROUTE_SAMPLE_MAP:
+        return aisle_route_step_roadmap(self, units);
+    case AISLE_ROUTE_SAMPLE_ASK:
+        return aisle_route_step_ask(self, units);
     case AISLE_ROUTE_SAMPLE_PULL:
         return pull(self);
     default:

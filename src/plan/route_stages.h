@@ -3,7 +3,7 @@
 // route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_repair.c: REPAIR. route_check.c: CHECK, NEAREST.
 // route_order.c: ORDER. route_tangent.c: TANGENT. route_manoeuvre.c: MANOEUVRE. route_seed.c: SEED, TAUT.
 // route_zones.c: ONE_WAY. route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER. route_local.c: LOCAL.
-// route_sample.c: SAMPLE.
+// route_sample.c, route_roadmap.c: SAMPLE.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
@@ -176,8 +176,17 @@ void aisle_route_begin_sample_leg(aisle_route *self);
 aisle_status aisle_route_step_sample(aisle_route *self, uint32_t units);
 // The leg under way has a reason by now for having no way, but no proof: true if sampling is tried before it is told.
 bool aisle_route_begin_spare(aisle_route *self);
+// The leg's way is in sample.path or sample.way, path_count configurations: on with it. There is none: the reason that is
+// known is told, or, where sampling was asked for by name, WHY looks for a proof.
+aisle_status aisle_route_take_sampled_way(aisle_route *self);
+aisle_status aisle_route_no_sampled_way(aisle_route *self);
 // Is it one of those by name?
 bool aisle_route_is_sampling(const aisle_route *self);
+
+// route_roadmap.c: what SAMPLE does for PRM. The leg's ends are in sample.start and sample.goal.
+void aisle_route_begin_roadmap(aisle_route *self);
+aisle_status aisle_route_step_roadmap(aisle_route *self, uint32_t units);
+aisle_status aisle_route_step_ask(aisle_route *self, uint32_t units);
 
 // route_proof.c
 aisle_compose_request aisle_route_build_request(aisle_route *self);

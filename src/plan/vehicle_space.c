@@ -164,6 +164,15 @@ static bool is_way_free(void *context, const double *a, const double *b, uint32_
     return aisle_space_moves_free(self->space, from, way.move, way.count, self->need, false, units);
 }
 
+double aisle_vehicle_space_longest(const aisle_vehicle_space *self, double distance) {
+    const double radius = self->rule.radius_min;
+    if (self->kind == AISLE_VEHICLE_SPACE_PLACE) {
+        return distance;
+    }
+    return radius > 0.0 ? REVERSE * (distance + 4.0 * AISLE_PI * radius) + (AISLE_REEDS_SHEPP_MOVES - 1U) * CUSP
+                        : distance + 2.0 * (TURN_START + AISLE_PI * TURN_RATE);
+}
+
 // ---- all together
 
 aisle_rrt_config aisle_vehicle_space_rrt(const aisle_vehicle_space *self, bool star, bool adaptive, bool plain,

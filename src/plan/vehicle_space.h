@@ -41,6 +41,11 @@ aisle_pose2 aisle_vehicle_space_pose(const aisle_vehicle_space *self, const doub
 uint32_t aisle_vehicle_space_moves(const aisle_vehicle_space *self, const double *a, const double *b,
                                    aisle_move *moves);
 
+// m, that no motion between configurations whose places are `distance` (m) apart is longer than. POSE: of the cheapest way,
+// by one that always is there: turn, line, turn; a car's shortest is no longer than distance + 4 pi least radii, a cusp after
+// every move and all of it backwards.
+double aisle_vehicle_space_longest(const aisle_vehicle_space *self, double distance);
+
 // What the planners RRT to RRT_STAR_ADAPTIVE are: all of a config but its ends and seed. plain: the paper's form. step in m; 0:
 // chosen by the hall.
 aisle_rrt_config aisle_vehicle_space_rrt(const aisle_vehicle_space *self, bool star, bool adaptive, bool plain,

@@ -42,6 +42,9 @@ double aisle_convex_gap(const aisle_convex *a, const aisle_convex *b);
 // Gap between two boxes (0 if they touch): a lower bound for what is inside them. O(1).
 double aisle_aabb_gap(aisle_aabb a, aisle_aabb b);
 
+// Does the straight way from a to b meet the box? O(1).
+bool aisle_aabb_meets(aisle_aabb box, aisle_vec2 a, aisle_vec2 b);
+
 // Gap between two plain segments; either may be a single point.
 double aisle_segment_gap(aisle_vec2 a0, aisle_vec2 a1, aisle_vec2 b0, aisle_vec2 b1);
 

@@ -12,6 +12,7 @@ HALL_UNUSED void hall_open_route(aisle_route *route, const aisle_limits *limits,
     aisle_arena arena = hall_arena(24U << 20);
     memset(route, 0, sizeof *route);
     aisle_route_carve(route, &arena, limits);
+    aisle_route_carve_roadmap(route, &arena, limits);
     route->budget_default = budget;
     hall_open(&arena, 0.05F);
 }

@@ -66,12 +66,12 @@ def parse() -> argparse.Namespace:
     return args
 
 
-def write_log(args: argparse.Namespace, folder: Path, scenario: Scenario, objective: str) -> Path:
+def write_log(args: argparse.Namespace, folder: Path, scenario: Scenario, objective: str, planner: str = "auto") -> Path:
     shape = {"footprint": scenario.footprint} if scenario.footprint else {"radius": scenario.radius}
     msg = vehicle.make({**shape, "margin": args.margin})
-    path = folder / f"{scenario.world.name}-{objective}.log"
+    path = folder / f"{scenario.world.name}-{planner}-{objective}.log"
     path.unlink(missing_ok=True)
-    offline.write_log(plan_options(objective), path, scenario.world, msg, legs_of(scenario))
+    offline.write_log(plan_options(objective, planner), path, scenario.world, msg, legs_of(scenario))
     return path
 
 
@@ -80,8 +80,8 @@ def legs_of(scenario: Scenario) -> list[query.Leg]:
     return [query.Leg(str(i + 1), a, [b]) for i, (a, b) in enumerate(zip(stops, stops[1:]))]
 
 
-def plan_options(objective: str) -> argparse.Namespace:
-    return argparse.Namespace(objective=objective, planner="auto", interpolation="spline", seed=0, work_units=0)
+def plan_options(objective: str, planner: str = "auto") -> argparse.Namespace:
+    return argparse.Namespace(objective=objective, planner=planner, interpolation="spline", seed=0, work_units=0)
 
 
 def runs_of(legs: int) -> int:
