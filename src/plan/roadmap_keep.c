@@ -76,19 +76,23 @@ static bool are_moves_touched(const aisle_vehicle_space *configurations, aisle_a
     return count == 0U && is_line_touched(box, from, from);
 }
 
+static bool is_motion_touched(const aisle_vehicle_space *configurations, aisle_aabb box, const double *a,
+                              const double *b) {
+    const aisle_vec2 from = {a[0], a[1]}, to = {b[0], b[1]};
+    if (configurations->kind == AISLE_VEHICLE_SPACE_PLACE) {
+        return aisle_aabb_meets(box, from, to);
+    }
+    const double longest = aisle_vehicle_space_longest(configurations, aisle_vec2_distance(from, to));
+    return aisle_cache_detour(box, from, to) <= longest &&
+           (are_moves_touched(configurations, box, a, b) || are_moves_touched(configurations, box, b, a));
+}
+
 bool aisle_roadmap_keep_touches(void *context, const double *a, const double *b) {
     const aisle_roadmap_changes *self = (const aisle_roadmap_changes *)context;
-    const aisle_vehicle_space *configurations = self->configurations;
-    const aisle_vehicle *vehicle = configurations->space->vehicle;
+    const aisle_vehicle *vehicle = self->configurations->space->vehicle;
     const double reach = vehicle->outer_radius + vehicle->margin + AISLE_ZONES_ROOM + SPARE;
-    const aisle_vec2 from = {a[0], a[1]}, to = {b[0], b[1]};
-    const double most = aisle_vehicle_space_longest(configurations, aisle_vec2_distance(from, to));
     for (uint32_t i = 0; i < self->count; i++) {
-        const aisle_aabb box = aisle_aabb_grow(self->box[i], reach);
-        if (configurations->kind == AISLE_VEHICLE_SPACE_PLACE ? aisle_aabb_meets(box, from, to)
-            : aisle_cache_detour(box, from, to) <= most
-                ? are_moves_touched(configurations, box, a, b) || are_moves_touched(configurations, box, b, a)
-                : false) {
+        if (is_motion_touched(self->configurations, aisle_aabb_grow(self->box[i], reach), a, b)) {
             return true;
         }
     }
@@ -150,20 +154,20 @@ void aisle_roadmap_keep_begin_from(aisle_roadmap_keep *self, const aisle_roadmap
 
 aisle_status aisle_roadmap_keep_step(aisle_roadmap_keep *self, const aisle_vehicle_space *configurations,
                                      uint32_t units, uint32_t *spent) {
-    if (self->map.phase == AISLE_ROADMAP_READY && !self->is_repairing && self->changes.count > 0U) {
+    const aisle_status st = aisle_roadmap_step(&self->map, units, spent);
+    if (st != AISLE_OK) {
+        return st;
+    }
+    if (!self->is_repairing && self->changes.count > 0U) {
         self->changes.configurations = configurations;
         self->is_repairing = true;
         self->repairs++;
         aisle_roadmap_repair(&self->map, aisle_roadmap_keep_touches, &self->changes);
+        return AISLE_BUSY;
     }
-    const aisle_status st = aisle_roadmap_step(&self->map, units, spent);
-    if (st == AISLE_OK && self->is_repairing) {
-        self->is_repairing = false;
-        self->changes.count = 0;
-    }
-    if (st == AISLE_OK) {
-        self->content = self->now;
-        self->map_id = self->map_id_now;
-    }
-    return st;
+    self->is_repairing = false;
+    self->changes.count = 0;
+    self->content = self->now;
+    self->map_id = self->map_id_now;
+    return AISLE_OK;
 }

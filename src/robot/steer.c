@@ -132,8 +132,16 @@ static void offer_words(list *self, aisle_pose2 from, aisle_pose2 to) {
     }
 }
 
+static bool are_same(aisle_pose2 from, aisle_pose2 to) {
+    return fabs(to.x - from.x) <= NOTHING && fabs(to.y - from.y) <= NOTHING &&
+           fabs(aisle_angle_difference(from.theta, to.theta)) <= NOTHING;
+}
+
 uint32_t aisle_steer(const aisle_steer_rule *rule, aisle_pose2 from, aisle_pose2 to, aisle_steer_way *ways) {
     list found = {rule, ways, 0};
+    if (are_same(from, to)) { // else a car would be offered a loop
+        return 0;
+    }
     offer_corner(&found, from, to);
     if (rule->radius_min > 0.0) {
         offer_words(&found, from, to);

@@ -31,6 +31,13 @@ static void judge_steering(uint64_t seed) {
         c->sample(c->context, &rng, a);
         c->sample(c->context, &rng, b);
         TEST_ASSERT_TRUE(aisle_cspace_cost(c, a, b) >= aisle_cspace_bound(c, a, b) - 1e-9);
+        aisle_move moves[AISLE_REEDS_SHEPP_MOVES];
+        double length = 0.0;
+        for (uint32_t n = c->dim == 3U ? aisle_vehicle_space_moves(&configurations, a, b, moves) : 0U; n > 0U; n--) {
+            length += fabs(moves[n - 1U].length);
+        }
+        const double apart = hypot(b[0] - a[0], b[1] - a[1]);
+        TEST_ASSERT_TRUE(length <= aisle_vehicle_space_longest(&configurations, apart));
         for (int part = 0; part <= 4; part++) {
             c->steer(c->context, a, b, 0.25 * part, q);
             const double *end = part == 0 ? a : b;

@@ -108,6 +108,7 @@ static void test_the_same_place_is_a_turn_and_the_same_configuration_nothing(voi
     TEST_ASSERT_EQUAL_UINT32(1U, aisle_steer(&on_spot, from, to, ways));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, -2.5, ways[0].move[0].turn);
     TEST_ASSERT_EQUAL_UINT32(0U, aisle_steer(&on_spot, from, from, ways));
+    TEST_ASSERT_EQUAL_UINT32(0U, aisle_steer(&car, from, from, ways)); // no loop
 }
 
 int main(void) {

@@ -287,6 +287,44 @@ static void test_hull_may_write_over_its_points(void) {
     TEST_ASSERT_EQUAL_MEMORY(square, points, sizeof square);
 }
 
+// Against clipping the way to the box (Liang and Barsky 1984); ways along edges and through corners among them.
+static bool clips(aisle_aabb box, aisle_vec2 a, aisle_vec2 b) {
+    const double from[2] = {a.x, a.y}, to[2] = {b.x, b.y};
+    const double lo[2] = {box.lo.x, box.lo.y}, hi[2] = {box.hi.x, box.hi.y};
+    long double t0 = 0.0L, t1 = 1.0L;
+    for (int d = 0; d < 2; d++) {
+        const long double step = (long double)to[d] - (long double)from[d];
+        if (fabsl(step) <= 0.0L) {
+            if (from[d] < lo[d] || from[d] > hi[d]) {
+                return false;
+            }
+            continue;
+        }
+        const long double u = ((long double)lo[d] - (long double)from[d]) / step;
+        const long double v = ((long double)hi[d] - (long double)from[d]) / step;
+        t0 = fmaxl(t0, fminl(u, v));
+        t1 = fminl(t1, fmaxl(u, v));
+    }
+    return t0 <= t1;
+}
+
+static void test_a_way_meets_a_box_as_clipping_says(void) {
+    aisle_rng rng = aisle_rng_seed(31);
+    int yes = 0;
+    for (int i = 0; i < 20000; i++) {
+        double c[8];
+        for (int k = 0; k < 8; k++) { // eighths of small numbers, so that much is exactly on an edge
+            c[k] = (double)(int)(32.0 * (double)aisle_rng_float(&rng)) / 8.0;
+        }
+        const aisle_aabb box = {{aisle_min(c[0], c[1]), aisle_min(c[2], c[3])},
+                                {aisle_max(c[0], c[1]), aisle_max(c[2], c[3])}};
+        const aisle_vec2 a = {c[4], c[5]}, b = {c[6], c[7]};
+        TEST_ASSERT_EQUAL_INT(clips(box, a, b), aisle_aabb_meets(box, a, b));
+        yes += aisle_aabb_meets(box, a, b) ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(yes > 2000 && yes < 18000);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_square_is_valid_in_one_direction_only);
@@ -308,5 +346,6 @@ int main(void) {
     RUN_TEST(test_place_turns_then_moves_also_in_place);
     RUN_TEST(test_hull_is_strictly_convex_made_of_its_points_and_holds_all_of_them);
     RUN_TEST(test_hull_may_write_over_its_points);
+    RUN_TEST(test_a_way_meets_a_box_as_clipping_says);
     return UNITY_END();
 }

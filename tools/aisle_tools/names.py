@@ -225,6 +225,9 @@ COUNTERS = dict(
             "ways round",
             "wait ms",
             "way round ms",
+            "cache repaired",
+            "roadmaps",
+            "roadmap repairs",
         ]
     )
 )
