@@ -89,10 +89,16 @@ static bool is_motion_touched(const aisle_vehicle_space *configurations, aisle_a
 
 bool aisle_roadmap_keep_touches(void *context, const double *a, const double *b) {
     const aisle_roadmap_changes *self = (const aisle_roadmap_changes *)context;
-    const aisle_vehicle *vehicle = self->configurations->space->vehicle;
-    const double reach = vehicle->outer_radius + vehicle->margin + AISLE_ZONES_ROOM + SPARE;
+    double stray = 0.0; // of a motion from the box of its ends, at most: the lesser half axis of the ellipse about them
+    if (self->configurations->kind == AISLE_VEHICLE_SPACE_POSE) {
+        const double apart = aisle_vec2_distance(aisle_vec2_of(a[0], a[1]), aisle_vec2_of(b[0], b[1]));
+        const double longest = aisle_vehicle_space_longest(self->configurations, apart);
+        stray = 0.5 * sqrt((longest - apart) * (longest + apart));
+    }
+    const aisle_aabb ends = {{aisle_min(a[0], b[0]) - stray, aisle_min(a[1], b[1]) - stray},
+                             {aisle_max(a[0], b[0]) + stray, aisle_max(a[1], b[1]) + stray}};
     for (uint32_t i = 0; i < self->count; i++) {
-        if (is_motion_touched(self->configurations, aisle_aabb_grow(self->box[i], reach), a, b)) {
+        if (aisle_aabb_overlap(self->box[i], ends) && is_motion_touched(self->configurations, self->box[i], a, b)) {
             return true;
         }
     }
@@ -152,6 +158,16 @@ void aisle_roadmap_keep_begin_from(aisle_roadmap_keep *self, const aisle_roadmap
     self->map_id_now = other->map_id_now;
 }
 
+// From here on the boxes are those that no origin may come into for a motion to be as it was.
+static void begin_changes(aisle_roadmap_changes *self, const aisle_vehicle_space *configurations) {
+    const aisle_vehicle *vehicle = configurations->space->vehicle;
+    const double reach = vehicle->outer_radius + vehicle->margin + AISLE_ZONES_ROOM + SPARE;
+    self->configurations = configurations;
+    for (uint32_t i = 0; i < self->count; i++) {
+        self->box[i] = aisle_aabb_grow(self->box[i], reach);
+    }
+}
+
 aisle_status aisle_roadmap_keep_step(aisle_roadmap_keep *self, const aisle_vehicle_space *configurations,
                                      uint32_t units, uint32_t *spent) {
     const aisle_status st = aisle_roadmap_step(&self->map, units, spent);
@@ -159,7 +175,7 @@ aisle_status aisle_roadmap_keep_step(aisle_roadmap_keep *self, const aisle_vehic
         return st;
     }
     if (!self->is_repairing && self->changes.count > 0U) {
-        self->changes.configurations = configurations;
+        begin_changes(&self->changes, configurations);
         self->is_repairing = true;
         self->repairs++;
         aisle_roadmap_repair(&self->map, aisle_roadmap_keep_touches, &self->changes);
