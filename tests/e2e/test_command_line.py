@@ -76,6 +76,7 @@ def test_recording_of_a_run_replays_to_the_same_bytes(make_daemon, data, tmp_pat
         daemon.aisle("query", "--scenario", path)
         daemon.aisle("query", "--scenario", path, "--objective", "shortest", "--interpolation", "linear")
         daemon.aisle("query", "--scenario", path)  # from memory
+        daemon.aisle("query", "--scenario", path, "--planner", "prm")
         daemon.aisle("query", "--start", "1,1", "--goal", "190,3", expect=1)
         daemon.aisle("goal", "--goal", "19,19", "--pose", "1,1,0", "--for", "4")
         assert daemon.stop() == 0
