@@ -103,4 +103,5 @@ def test_a_query_from_the_command_line_names_it(daemon, field, tmp_path):
     assert "0 at fault" in daemon.aisle("check", log, "--map", field)
     assert [r.planner for r in Recording(log, daemon.prefix).replies] == [options_t.PRM]
     assert " OK " in daemon.aisle(*words, "--seed", "7")
+    daemon.fresh_status()  # what waited in the queue is heard
     assert daemon.counter(HITS) == 1 and daemon.counter(ROADMAPS) == 2  # another seed is another roadmap
