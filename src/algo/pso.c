@@ -8,8 +8,6 @@
 #define CONSTRICTION_W 0.729844F
 #define CONSTRICTION_C 1.49618F
 
-static const aisle_pso_cost NOT_ALLOWED = {INFINITY, INFINITY};
-
 // The pieces of the work array: x, v and best point of every particle, best costs, best point of the swarm.
 static float *x_of(const aisle_pso *self, uint32_t particle) {
     return self->work + (size_t)particle * self->cfg->dim;
@@ -29,14 +27,6 @@ static float *p_cost_of(const aisle_pso *self, uint32_t particle) {
 
 static float *g_of(const aisle_pso *self) {
     return p_cost_of(self, self->cfg->particles);
-}
-
-static bool is_allowed(aisle_pso_cost cost) {
-    return cost.violation < INFINITY && cost.value < INFINITY;
-}
-
-bool aisle_pso_better(aisle_pso_cost a, aisle_pso_cost b) {
-    return a.violation < b.violation || (!(b.violation < a.violation) && a.value < b.value);
 }
 
 static float clamp(float x, float lo, float hi) {
@@ -100,8 +90,8 @@ static void place(aisle_pso *self, uint32_t particle) {
         }
         p[i] = x[i];
     }
-    p_cost_of(self, particle)[0] = NOT_ALLOWED.violation;
-    p_cost_of(self, particle)[1] = NOT_ALLOWED.value;
+    p_cost_of(self, particle)[0] = INFINITY;
+    p_cost_of(self, particle)[1] = INFINITY;
 }
 
 aisle_status aisle_pso_start(aisle_pso *self, const aisle_pso_config *cfg, float *work, size_t work_len) {
@@ -111,8 +101,11 @@ aisle_status aisle_pso_start(aisle_pso *self, const aisle_pso_config *cfg, float
     if (work_len < AISLE_PSO_WORK_LEN(cfg->dim, cfg->particles)) {
         return AISLE_ERR_CAPACITY;
     }
-    *self = (aisle_pso){
-        .cfg = cfg, .work = work, .rng = aisle_rng_seed(cfg->seed), .best_cost = NOT_ALLOWED, .ended = AISLE_BUSY};
+    *self = (aisle_pso){.cfg = cfg,
+                        .work = work,
+                        .rng = aisle_rng_seed(cfg->seed),
+                        .best_cost = aisle_cost_pair_not_allowed(),
+                        .ended = AISLE_BUSY};
     for (uint32_t particle = 0; particle < cfg->particles; particle++) {
         place(self, particle);
     }
@@ -122,30 +115,26 @@ aisle_status aisle_pso_start(aisle_pso *self, const aisle_pso_config *cfg, float
     return AISLE_OK;
 }
 
-static aisle_pso_cost ask(aisle_pso *self, const float *x) {
-    aisle_pso_cost cost = self->cfg->cost(self->cfg->cost_ctx, x);
+static aisle_cost_pair ask(aisle_pso *self, const float *x) {
+    const aisle_cost_pair cost = self->cfg->cost(self->cfg->cost_ctx, x);
     self->evals++;
-    if (isnan(cost.violation) || isnan(cost.value)) {
-        self->nan_costs++;
-        return NOT_ALLOWED;
-    }
-    cost.violation = cost.violation > 0.0F ? cost.violation : 0.0F;
-    return is_allowed(cost) ? cost : NOT_ALLOWED;
+    self->nan_costs += aisle_cost_pair_is_nan(cost) ? 1U : 0U;
+    return aisle_cost_pair_read(cost);
 }
 
 // Remembers a point that is the particle's or the swarm's best.
-static void learn(aisle_pso *self, uint32_t particle, aisle_pso_cost cost) {
+static void learn(aisle_pso *self, uint32_t particle, aisle_cost_pair cost) {
     const float *x = x_of(self, particle);
     float *p = p_of(self, particle);
     float *p_cost = p_cost_of(self, particle);
-    if (aisle_pso_better(cost, (aisle_pso_cost){p_cost[0], p_cost[1]})) {
+    if (aisle_cost_pair_better(cost, (aisle_cost_pair){p_cost[0], p_cost[1]})) {
         p_cost[0] = cost.violation;
         p_cost[1] = cost.value;
         for (uint32_t i = 0; i < self->cfg->dim; i++) {
             p[i] = x[i];
         }
     }
-    if (aisle_pso_better(cost, self->best_cost)) {
+    if (aisle_cost_pair_better(cost, self->best_cost)) {
         self->best_cost = cost;
         self->best_updates++;
         self->last_improvement = self->evals;
@@ -194,7 +183,7 @@ static void move(aisle_pso *self, uint32_t particle) {
 // Where the particle goes after it was looked at; true: it is looked at again at once.
 static bool go_on(aisle_pso *self, uint32_t particle, bool allowed) {
     const bool again = !allowed && self->tries < self->cfg->relocate;
-    if (again || !is_allowed(self->best_cost)) {
+    if (again || !aisle_cost_pair_is_allowed(self->best_cost)) {
         draw(self, particle);
     } else {
         move(self, particle);
@@ -206,7 +195,8 @@ static bool go_on(aisle_pso *self, uint32_t particle, bool allowed) {
 
 static aisle_status verdict(const aisle_pso *self) {
     const aisle_pso_config *cfg = self->cfg;
-    if (is_allowed(self->best_cost) && self->best_cost.violation <= 0.0F && self->best_cost.value <= cfg->value_goal) {
+    if (aisle_cost_pair_is_allowed(self->best_cost) && self->best_cost.violation <= 0.0F &&
+        self->best_cost.value <= cfg->value_goal) {
         return AISLE_OK;
     }
     const bool stalled = cfg->stall_max > 0 && self->evals - self->last_improvement >= cfg->stall_max;
@@ -220,9 +210,9 @@ aisle_status aisle_pso_step(aisle_pso *self, uint32_t evals) {
     for (uint32_t spent = 0; spent < evals && self->ended == AISLE_BUSY; spent++) {
         const uint32_t particle = self->next;
         AISLE_ASSERT(particle < self->cfg->particles);
-        const aisle_pso_cost cost = ask(self, x_of(self, particle));
+        const aisle_cost_pair cost = ask(self, x_of(self, particle));
         learn(self, particle, cost);
-        if (!go_on(self, particle, is_allowed(cost))) {
+        if (!go_on(self, particle, aisle_cost_pair_is_allowed(cost))) {
             self->next = (uint16_t)((particle + 1U) % self->cfg->particles);
         }
         self->ended = verdict(self);
@@ -231,7 +221,7 @@ aisle_status aisle_pso_step(aisle_pso *self, uint32_t evals) {
 }
 
 const float *aisle_pso_best(const aisle_pso *self) {
-    return self->cfg != NULL && is_allowed(self->best_cost) ? g_of(self) : NULL;
+    return self->cfg != NULL && aisle_cost_pair_is_allowed(self->best_cost) ? g_of(self) : NULL;
 }
 
 static bool particle_holds(const aisle_pso *self, uint32_t particle) {
@@ -246,7 +236,7 @@ static bool particle_holds(const aisle_pso *self, uint32_t particle) {
         }
     }
     return p_cost[0] >= 0.0F && !isnan(p_cost[1]) &&
-           !aisle_pso_better((aisle_pso_cost){p_cost[0], p_cost[1]}, self->best_cost);
+           !aisle_cost_pair_better((aisle_cost_pair){p_cost[0], p_cost[1]}, self->best_cost);
 }
 
 bool aisle_pso_invariants_hold(const aisle_pso *self) {
@@ -256,7 +246,7 @@ bool aisle_pso_invariants_hold(const aisle_pso *self) {
     const aisle_pso_config *cfg = self->cfg;
     if (self->next >= cfg->particles || self->evals > cfg->eval_max || self->nan_costs > self->evals ||
         self->best_updates > self->evals || self->last_improvement > self->evals || self->relocations > self->evals ||
-        self->tries > cfg->relocate || is_allowed(self->best_cost) != (self->best_updates > 0) ||
+        self->tries > cfg->relocate || aisle_cost_pair_is_allowed(self->best_cost) != (self->best_updates > 0) ||
         self->ended != verdict(self)) {
         return false;
     }

@@ -8,7 +8,7 @@
 // Ours, not theirs: x is clamped to the box and the clamped component of v is zeroed; |v| is limited to half the box
 // in each component; particles start at rest (Engelbrecht 2012) and follow one another (g is renewed after each
 // evaluation, not after each round); until the swarm has seen an allowed point its particles are drawn anew;
-// costs are pairs, compared first by violation, then by value (feasibility first: Deb 2000), never added up.
+// costs are pairs (cost_pair.h).
 // The first particle starts at the caller's guess, so the result is never worse than the guess.
 // Relocation (Islam et al. 2013): with cfg->relocate a particle that came to a place not allowed is drawn anew, at rest,
 // and looked at again at once, so that none is lost; so many times in a row at most, each an evaluation.
@@ -24,6 +24,7 @@
 #define AISLE_ALGO_PSO_H
 
 #include "aisle/status.h"
+#include "algo/cost_pair.h"
 #include "base/rng.h"
 
 #include <stdbool.h>
@@ -41,21 +42,13 @@
 // Floats of scratch for one run: x, v, best x and best cost (2) of every particle, and the global best.
 #define AISLE_PSO_WORK_LEN(dim, particles) ((size_t)(particles) * (3U * (size_t)(dim) + 2U) + (size_t)(dim))
 
-typedef struct aisle_pso_cost { // smaller is better: violation first, then value
-    float violation;            // 0 (or below) = feasible; INFINITY = not allowed at all
-    float value;                // INFINITY = not allowed at all
-} aisle_pso_cost;
-
-// Cost of x[dim]. NaN in either part is counted and read as not allowed.
-typedef aisle_pso_cost (*aisle_pso_cost_fn)(void *ctx, const float *x);
-
 typedef enum aisle_pso_inertia { AISLE_PSO_FALLING, AISLE_PSO_CONSTRICTION } aisle_pso_inertia;
 
 typedef struct aisle_pso_config {
-    aisle_pso_cost_fn cost; // must not call back into the same aisle_pso
-    void *cost_ctx;         // passed through, may be NULL
-    const float *lo, *hi;   // [dim] box, unit of x[i]; -1e30 <= lo[i] < hi[i] <= 1e30
-    const float *guess;     // [dim] where the first particle starts, finite, clamped to the box; NULL = random
+    aisle_cost_pair_fn cost; // must not call back into the same aisle_pso
+    void *cost_ctx;          // passed through, may be NULL
+    const float *lo, *hi;    // [dim] box, unit of x[i]; -1e30 <= lo[i] < hi[i] <= 1e30
+    const float *guess;      // [dim] where the first particle starts, finite, clamped to the box; NULL = random
     float spread; // the other particles start within +- spread * (hi - lo) of the guess; 0 or no guess = whole box
     aisle_pso_inertia inertia;
     float w_start, w_end; // FALLING only; 0 and 0 = 0.9 and 0.4
@@ -77,7 +70,7 @@ typedef struct aisle_pso {
     uint32_t evals, nan_costs, best_updates; // counters since start()
     uint32_t relocations;                    // likewise
     uint32_t last_improvement;               // evals at that time
-    aisle_pso_cost best_cost;                // both INFINITY until an allowed point was seen
+    aisle_cost_pair best_cost;               // both INFINITY until an allowed point was seen
     uint16_t next;                           // particle to evaluate next
     uint16_t tries;                          // times it has been relocated in a row
     aisle_status ended;                      // AISLE_BUSY while running
@@ -94,9 +87,6 @@ aisle_status aisle_pso_step(aisle_pso *self, uint32_t evals);
 
 // Best point so far, [dim], inside the box; NULL while nothing allowed was seen. Valid until start().
 const float *aisle_pso_best(const aisle_pso *self);
-
-// True if a is better than b: feasibility first.
-bool aisle_pso_better(aisle_pso_cost a, aisle_pso_cost b);
 
 // O(particles * dim): true unless memory was overwritten. For asserts and tests.
 bool aisle_pso_invariants_hold(const aisle_pso *self);

@@ -130,8 +130,8 @@ static aisle_vec2 place_of(const aisle_local *self, const float *x) {
     return step > 0.0 ? aisle_vec2_of(floor(p.x / step + 0.5) * step, floor(p.y / step + 0.5) * step) : p;
 }
 
-static aisle_pso_cost cost(void *ctx, const float *x) {
-    static const aisle_pso_cost not_allowed = {INFINITY, INFINITY};
+static aisle_cost_pair cost(void *ctx, const float *x) {
+    static const aisle_cost_pair not_allowed = {INFINITY, INFINITY};
     aisle_local *self = (aisle_local *)ctx;
     const aisle_vec2 here = here_of(self), p = place_of(self, x);
     const double far = aisle_vec2_distance(here, p), togo = togo_at(self, p);
@@ -145,7 +145,7 @@ static aisle_pso_cost cost(void *ctx, const float *x) {
     if (turns && !aisle_space_turn_free(self->request.space, p, &self->units)) {
         return not_allowed;
     }
-    return (aisle_pso_cost){0.0F, (float)(togo + (self->request.beeline ? 0.0 : PULL * far))};
+    return (aisle_cost_pair){0.0F, (float)(togo + (self->request.beeline ? 0.0 : PULL * far))};
 }
 
 // Down the cost-to-go from `here`, cells in range. Returns how many.

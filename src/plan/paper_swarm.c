@@ -95,14 +95,14 @@ static bool sample_way(aisle_paper_swarm *self, const float *x) {
     return true;
 }
 
-static aisle_pso_cost cost(void *ctx, const float *x) {
+static aisle_cost_pair cost(void *ctx, const float *x) {
     aisle_paper_swarm *self = (aisle_paper_swarm *)ctx;
     if (!sample_way(self, x)) {
         self->units += 1U;
-        return (aisle_pso_cost){INFINITY, INFINITY};
+        return (aisle_cost_pair){INFINITY, INFINITY};
     }
     aisle_paper_figures f = judge(self);
-    return (aisle_pso_cost){(float)f.violation, (float)f.fitness};
+    return (aisle_cost_pair){(float)f.violation, (float)f.fitness};
 }
 
 // False: too many.

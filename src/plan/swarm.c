@@ -47,7 +47,7 @@ static void zones_between(const aisle_swarm *self, aisle_vec2 a, aisle_vec2 b, d
     *value += aisle_zones_toll(layout, self->objective, a, b);
 }
 
-static aisle_pso_cost score(aisle_swarm *self) {
+static aisle_cost_pair score(aisle_swarm *self) {
     double violation = 0.0;
     double value = 0.0;
     double before = 0.0; // distance to the sample before
@@ -69,7 +69,7 @@ static aisle_pso_cost score(aisle_swarm *self) {
         }
     }
     self->units += self->samples / AISLE_SWARM_SAMPLES_PER_UNIT;
-    return (aisle_pso_cost){(float)violation, (float)value};
+    return (aisle_cost_pair){(float)violation, (float)value};
 }
 
 static uint32_t via_points(const aisle_swarm *self, const float *x, aisle_vec2 *points) {
@@ -82,15 +82,15 @@ static uint32_t via_points(const aisle_swarm *self, const float *x, aisle_vec2 *
     return self->vias + 2U;
 }
 
-static aisle_pso_cost cost(void *ctx, const float *x) {
+static aisle_cost_pair cost(void *ctx, const float *x) {
     aisle_swarm *self = (aisle_swarm *)ctx;
     aisle_vec2 points[AISLE_SWARM_VIAS + 2U];
     uint32_t n = via_points(self, x, points);
     if (aisle_spline_fit(self->spline, self->kind, points, n) != AISLE_OK) {
-        return (aisle_pso_cost){INFINITY, INFINITY};
+        return (aisle_cost_pair){INFINITY, INFINITY};
     }
     aisle_spline_spread(self->spline, self->samples, self->sample);
-    aisle_pso_cost scored = score(self);
+    aisle_cost_pair scored = score(self);
     if (self->pso.evals == 0U) { // the first particle stands at the seed
         self->seed_cost = scored;
     }
@@ -196,9 +196,9 @@ static aisle_status polish(aisle_swarm *self) {
     float before = self->best[i];
     self->best[i] = before + (self->at % 2U == 0U ? self->step : -self->step);
     bool is_within = self->best[i] >= self->lo[i] && self->best[i] <= self->hi[i];
-    aisle_pso_cost there = is_within ? cost(self, self->best) : (aisle_pso_cost){INFINITY, INFINITY};
+    aisle_cost_pair there = is_within ? cost(self, self->best) : (aisle_cost_pair){INFINITY, INFINITY};
     self->polish_evals += is_within ? 1U : 0U;
-    if (aisle_pso_better(there, self->best_cost)) {
+    if (aisle_cost_pair_better(there, self->best_cost)) {
         self->best_cost = there;
         self->moved = true;
         return AISLE_BUSY;
@@ -228,7 +228,7 @@ aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent
     return st;
 }
 
-aisle_pso_cost aisle_swarm_best_cost(const aisle_swarm *self) {
+aisle_cost_pair aisle_swarm_best_cost(const aisle_swarm *self) {
     return self->polishing ? self->best_cost : self->pso.best_cost;
 }
 

@@ -46,13 +46,13 @@ typedef struct aisle_swarm {
     aisle_spline *spline;
     aisle_spline_sample *sample;      // [AISLE_SWARM_SAMPLES_MAX]
     float best[2 * AISLE_SWARM_VIAS]; // polish: where it stands
-    aisle_pso_cost best_cost;
+    aisle_cost_pair best_cost;
     float step;  // m
     uint32_t at; // 2 * component, + 1 for the way back
     uint32_t polish_evals;
-    bool heeds_zones;         // there are some that bar or cost
-    bool polishing, moved;    // moved: in this round
-    aisle_pso_cost seed_cost; // of the first particle, once it was scored: a counter for tests and tables
+    bool heeds_zones;          // there are some that bar or cost
+    bool polishing, moved;     // moved: in this round
+    aisle_cost_pair seed_cost; // of the first particle, once it was scored: a counter for tests and tables
     uint32_t units;
 } aisle_swarm;
 
@@ -67,7 +67,7 @@ aisle_status aisle_swarm_start(aisle_swarm *self, const aisle_space *space, cons
 aisle_status aisle_swarm_step(aisle_swarm *self, uint32_t units, uint32_t *spent);
 
 // Cost of the best place so far, polish included; both INFINITY while there is none.
-aisle_pso_cost aisle_swarm_best_cost(const aisle_swarm *self);
+aisle_cost_pair aisle_swarm_best_cost(const aisle_swarm *self);
 
 // Writes start, vias, goal of the best particle to points[AISLE_SWARM_VIAS + 2]; returns the count; 0 if nothing
 // feasible was seen.

@@ -41,24 +41,24 @@ static float bowl_value(const float *x) {
     return sum;
 }
 
-static aisle_pso_cost bowl(void *ctx, const float *x) {
+static aisle_cost_pair bowl(void *ctx, const float *x) {
     (void)ctx;
     expect_in_box(x);
-    return (aisle_pso_cost){0.0F, bowl_value(x)};
+    return (aisle_cost_pair){0.0F, bowl_value(x)};
 }
 
-static aisle_pso_cost bowl_with_a_nan_rim(void *above, const float *x) {
-    const aisle_pso_cost cost = bowl(NULL, x);
-    return cost.value > *(const float *)above ? (aisle_pso_cost){0.0F, NAN} : cost;
+static aisle_cost_pair bowl_with_a_nan_rim(void *above, const float *x) {
+    const aisle_cost_pair cost = bowl(NULL, x);
+    return cost.value > *(const float *)above ? (aisle_cost_pair){0.0F, NAN} : cost;
 }
 
 // Only x[0] >= 0.5 is feasible, and that is dearer: value alone would go the other way.
-static aisle_pso_cost walled_bowl(void *ctx, const float *x) {
-    const aisle_pso_cost cost = bowl(ctx, x);
-    return (aisle_pso_cost){x[0] < 0.5F ? 0.5F - x[0] : 0.0F, cost.value};
+static aisle_cost_pair walled_bowl(void *ctx, const float *x) {
+    const aisle_cost_pair cost = bowl(ctx, x);
+    return (aisle_cost_pair){x[0] < 0.5F ? 0.5F - x[0] : 0.0F, cost.value};
 }
 
-static aisle_pso_cost rosenbrock(void *ctx, const float *x) {
+static aisle_cost_pair rosenbrock(void *ctx, const float *x) {
     (void)ctx;
     expect_in_box(x);
     float sum = 0.0F;
@@ -67,10 +67,10 @@ static aisle_pso_cost rosenbrock(void *ctx, const float *x) {
         const float b = 1.0F - x[i];
         sum += 100.0F * a * a + b * b;
     }
-    return (aisle_pso_cost){0.0F, sum};
+    return (aisle_cost_pair){0.0F, sum};
 }
 
-static aisle_pso_cost rastrigin(void *ctx, const float *x) {
+static aisle_cost_pair rastrigin(void *ctx, const float *x) {
     (void)ctx;
     expect_in_box(x);
     double sum = 0.0;
@@ -80,7 +80,7 @@ static aisle_pso_cost rastrigin(void *ctx, const float *x) {
         aisle_sincos(2.0 * AISLE_PI * (double)x[i], &sine, &cosine); // the same hits on every board
         sum += (double)(x[i] * x[i]) + 10.0 - 10.0 * cosine;
     }
-    return (aisle_pso_cost){0.0F, (float)sum};
+    return (aisle_cost_pair){0.0F, (float)sum};
 }
 
 static aisle_status start(void) {
@@ -260,13 +260,13 @@ static void test_result_is_never_worse_than_the_guess_for_200_of_200_seeds(void)
 
 static float farthest[DIM];
 
-static aisle_pso_cost note_farthest(void *guess, const float *x) {
+static aisle_cost_pair note_farthest(void *guess, const float *x) {
     expect_in_box(x);
     for (int i = 0; i < DIM; i++) {
         const float off = fabsf(x[i] - ((const float *)guess)[i]) / (hi[i] - lo[i]);
         farthest[i] = off > farthest[i] ? off : farthest[i];
     }
-    return (aisle_pso_cost){0.0F, 1.0F};
+    return (aisle_cost_pair){0.0F, 1.0F};
 }
 
 static void test_particles_start_within_the_spread_and_fill_it(void) {
@@ -289,12 +289,12 @@ static void test_particles_start_within_the_spread_and_fill_it(void) {
 }
 
 static void test_feasible_is_better_than_any_value(void) {
-    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){0.0F, 9.0F}, (aisle_pso_cost){0.1F, -9.0F}));
-    TEST_ASSERT_FALSE(aisle_pso_better((aisle_pso_cost){0.1F, -9.0F}, (aisle_pso_cost){0.0F, 9.0F}));
-    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){0.1F, 9.0F}, (aisle_pso_cost){0.2F, -9.0F}));
-    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){0.1F, 1.0F}, (aisle_pso_cost){0.1F, 2.0F}));
-    TEST_ASSERT_FALSE(aisle_pso_better((aisle_pso_cost){0.1F, 1.0F}, (aisle_pso_cost){0.1F, 1.0F}));
-    TEST_ASSERT_TRUE(aisle_pso_better((aisle_pso_cost){5.0F, 5.0F}, (aisle_pso_cost){INFINITY, INFINITY}));
+    TEST_ASSERT_TRUE(aisle_cost_pair_better((aisle_cost_pair){0.0F, 9.0F}, (aisle_cost_pair){0.1F, -9.0F}));
+    TEST_ASSERT_FALSE(aisle_cost_pair_better((aisle_cost_pair){0.1F, -9.0F}, (aisle_cost_pair){0.0F, 9.0F}));
+    TEST_ASSERT_TRUE(aisle_cost_pair_better((aisle_cost_pair){0.1F, 9.0F}, (aisle_cost_pair){0.2F, -9.0F}));
+    TEST_ASSERT_TRUE(aisle_cost_pair_better((aisle_cost_pair){0.1F, 1.0F}, (aisle_cost_pair){0.1F, 2.0F}));
+    TEST_ASSERT_FALSE(aisle_cost_pair_better((aisle_cost_pair){0.1F, 1.0F}, (aisle_cost_pair){0.1F, 1.0F}));
+    TEST_ASSERT_TRUE(aisle_cost_pair_better((aisle_cost_pair){5.0F, 5.0F}, (aisle_cost_pair){INFINITY, INFINITY}));
 }
 
 static void test_violation_comes_first_for_100_of_100_seeds(void) {
@@ -308,9 +308,9 @@ static void test_violation_comes_first_for_100_of_100_seeds(void) {
     }
 }
 
-static aisle_pso_cost never_feasible(void *ctx, const float *x) {
-    const aisle_pso_cost cost = bowl(ctx, x);
-    return (aisle_pso_cost){1.0F + cost.value, -1000.0F};
+static aisle_cost_pair never_feasible(void *ctx, const float *x) {
+    const aisle_cost_pair cost = bowl(ctx, x);
+    return (aisle_cost_pair){1.0F + cost.value, -1000.0F};
 }
 
 static void test_goal_is_not_met_by_a_point_that_violates(void) {
@@ -347,16 +347,16 @@ static void test_nan_everywhere_ends_partial_with_no_best(void) {
     TEST_ASSERT_TRUE(isinf(pso.best_cost.violation) && isinf(pso.best_cost.value));
 }
 
-static aisle_pso_cost answer;
+static aisle_cost_pair answer;
 
-static aisle_pso_cost always(void *ctx, const float *x) {
+static aisle_cost_pair always(void *ctx, const float *x) {
     (void)ctx;
     expect_in_box(x);
     return answer;
 }
 
 static void expect_no_best_for(float violation, float value) {
-    answer = (aisle_pso_cost){violation, value};
+    answer = (aisle_cost_pair){violation, value};
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(11));
     TEST_ASSERT_NULL(aisle_pso_best(&pso));
 }
@@ -376,7 +376,7 @@ static void test_infinity_or_nan_in_either_part_is_not_allowed(void) {
 
 static void test_negative_violation_is_read_as_feasible(void) {
     cfg.cost = always;
-    answer = (aisle_pso_cost){-3.0F, 0.0F};
+    answer = (aisle_cost_pair){-3.0F, 0.0F};
     TEST_ASSERT_EQUAL(AISLE_OK, run_in_steps_of(11));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, pso.best_cost.violation);
     TEST_ASSERT_EQUAL_UINT32(1, pso.evals);
@@ -384,7 +384,7 @@ static void test_negative_violation_is_read_as_feasible(void) {
 
 static void test_stall_ends_the_run_that_many_evaluations_after_the_last_gain(void) {
     cfg.cost = always;
-    answer = (aisle_pso_cost){0.0F, 5.0F};
+    answer = (aisle_cost_pair){0.0F, 5.0F};
     cfg.stall_max = 77;
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(10));
     TEST_ASSERT_EQUAL_UINT32(1, pso.last_improvement);
@@ -570,7 +570,7 @@ static void test_the_largest_box_and_spread_stay_finite(void) {
     cfg.c1 = cfg.c2 = 4.0F;
     cfg.w_start = cfg.w_end = 1.0F;
     cfg.cost = always;
-    answer = (aisle_pso_cost){0.0F, 1.0F};
+    answer = (aisle_cost_pair){0.0F, 1.0F};
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(100)); // expect_in_box() refuses NaN
 }
 
@@ -632,9 +632,9 @@ static void test_bits_are_those_of_every_other_board(void) {
 }
 
 // Allowed is a tenth of the box only.
-static aisle_pso_cost slit(void *ctx, const float *x) {
-    const aisle_pso_cost cost = bowl(ctx, x);
-    return x[0] > 0.2F && x[0] < 0.4F ? cost : (aisle_pso_cost){INFINITY, INFINITY};
+static aisle_cost_pair slit(void *ctx, const float *x) {
+    const aisle_cost_pair cost = bowl(ctx, x);
+    return x[0] > 0.2F && x[0] < 0.4F ? cost : (aisle_cost_pair){INFINITY, INFINITY};
 }
 
 static void test_a_particle_not_allowed_is_drawn_anew_at_once(void) {

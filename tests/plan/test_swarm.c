@@ -117,7 +117,7 @@ static void test_the_best_is_never_worse_than_the_seed_and_keeps_the_margin_if_f
                 leg[i] = random_place(&rng);
             }
             TEST_ASSERT_EQUAL(AISLE_OK, run(leg, 3, 5000));
-            TEST_ASSERT_FALSE(aisle_pso_better(swarm.seed_cost, aisle_swarm_best_cost(&swarm)));
+            TEST_ASSERT_FALSE(aisle_cost_pair_better(swarm.seed_cost, aisle_swarm_best_cost(&swarm)));
             aisle_vec2 points[AISLE_SWARM_VIAS + 2U];
             if (aisle_swarm_best(&swarm, points) == 0) {
                 TEST_ASSERT_TRUE(aisle_swarm_best_cost(&swarm).violation > 0.0F);
