@@ -21,6 +21,7 @@ typedef struct aisle_leg {
     bool searched;         // for a manoeuvre
     bool is_eased;         // and for one that keeps clear where that is cheaper
     bool is_sampled;       // a sampling planner found the way
+    bool is_bred;          // the genetic search did
     bool heading_is_free;  // where the leg begins
     double heading;        // rad, there, else
     double seed_value, swarm_value; // measured cost of either way of building it; negative = not measured

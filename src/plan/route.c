@@ -50,15 +50,16 @@ static void carve_ask(aisle_route *self, part *instead, aisle_arena *arena, cons
 // No leg is searched two ways at a time: the other searches lie where the grid search does. Nor
 // is anything searched while an order is computed.
 static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
-    aisle_arena shared[6] = {*arena, *arena, *arena, *arena, *arena, *arena};
+    aisle_arena shared[7] = {*arena, *arena, *arena, *arena, *arena, *arena, *arena};
     aisle_tangent_carve(PART(self, instead, tangent), &shared[0], limits);
     aisle_manoeuvre_carve(PART(self, instead, manoeuvre), &shared[1], limits);
     aisle_tour_carve_shared(PART(self, instead, tour), &shared[2]);
     aisle_local_carve(PART(self, instead, local), &shared[3], limits->cells);
     carve_sample(self, &shared[4], limits);
     carve_ask(self, instead, &shared[5], limits);
+    aisle_barrier_carve(self != NULL ? &self->barrier : NULL, &shared[6]);
     aisle_seed_carve(PART(self, instead, seed), arena, limits);
-    for (uint32_t i = 0; i < 6U; i++) {
+    for (uint32_t i = 0; i < 7U; i++) {
         arena->overflow = arena->overflow || shared[i].overflow;
         arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
     }
@@ -158,6 +159,7 @@ void aisle_route_start(aisle_route *self, const aisle_layout *layout, const aisl
     self->spare.ready = self->spare.told = false;
     self->stops = false;
     self->is_wide = false;
+    self->is_unbred = false;
     self->announced = false;
     self->movers = NULL;
     self->in_motion = false;
@@ -209,6 +211,8 @@ static aisle_status step_stage(aisle_route *self, uint32_t units) {
         return aisle_route_step_local(self, units);
     case AISLE_ROUTE_SAMPLE:
         return aisle_route_step_sample(self, units);
+    case AISLE_ROUTE_GA:
+        return aisle_route_step_ga(self, units);
     case AISLE_ROUTE_ONE_WAY:
         return aisle_route_step_one_way(self, units);
     case AISLE_ROUTE_WHY:

@@ -33,6 +33,9 @@
 // to what fits. A query's stays (roadmap_keep.h): the next one only asks, after a repair where patches have changed the layout. A
 // goal list works on a copy and leaves nothing. Objective PAPER: the paper's form, of AISLE_ROUTE_ROADMAP_PLAIN draws or
 // options.num_samples, all edges tested first, Dijkstra's search, and no more draws where it fails.
+// GA is the exact way for SHORTEST, else the objective's GRID way alone; each leg's seed is bred (barrier.h), pulled taut and
+// built in its place; disproved, all is planned again without. With objective PAPER it is the paper's own form alone, in
+// place of all searches: its path or a refusal as of a sampling planner.
 // PSO_LOCAL is the local swarm's way alone (local.h), with movers if aisle_route_go_round() gave some; its failure proves
 // nothing (BLOCKED_BY the mover nearest to where it got to, else BUDGET).
 // Zones (zones.h): tangent ways must obey DIRECTED ones, else the leg is the grid's; PENALTY zones add what they cost to
@@ -57,6 +60,7 @@
 #define AISLE_PLAN_ROUTE_H
 
 #include "algo/rrt.h"
+#include "plan/barrier.h"
 #include "plan/cache.h"
 #include "plan/compose.h"
 #include "plan/leg.h"
@@ -117,13 +121,14 @@ typedef struct aisle_proof { // an encoded path and what it is worth
 
 // A way to plan a request; an objective may try several and keep the best by its own measure (route_ways.c).
 typedef enum aisle_way_kind {
-    AISLE_WAY_SHORT,  // exactly, by the tangent search, at the margin
-    AISLE_WAY_CLEAR,  // the same at the creep clearance, where that is possible; else as GRID
-    AISLE_WAY_GRID,   // by the grid's search
-    AISLE_WAY_PAPER,  // by the paper's own swarm
-    AISLE_WAY_REPAIR, // of the free pieces of a remembered answer
-    AISLE_WAY_LOCAL,  // by the local swarm
-    AISLE_WAY_SAMPLE  // by the sampling planner that is named
+    AISLE_WAY_SHORT,   // exactly, by the tangent search, at the margin
+    AISLE_WAY_CLEAR,   // the same at the creep clearance, where that is possible; else as GRID
+    AISLE_WAY_GRID,    // by the grid's search
+    AISLE_WAY_PAPER,   // by the paper's own swarm
+    AISLE_WAY_REPAIR,  // of the free pieces of a remembered answer
+    AISLE_WAY_LOCAL,   // by the local swarm
+    AISLE_WAY_SAMPLE,  // by the sampling planner that is named
+    AISLE_WAY_GA_PAPER // by the genetic paper's own form
 } aisle_way_kind;
 
 typedef struct aisle_way {
@@ -149,6 +154,7 @@ typedef enum aisle_route_stage {
     AISLE_ROUTE_PAPER,
     AISLE_ROUTE_LOCAL,
     AISLE_ROUTE_SAMPLE,
+    AISLE_ROUTE_GA,
     AISLE_ROUTE_ONE_WAY, // do zones shut every way?
     AISLE_ROUTE_WHY,
     AISLE_ROUTE_NEXT, // the way under way is done with
@@ -230,6 +236,8 @@ typedef struct aisle_route {
     aisle_local local;
     aisle_route_sample sample;
     aisle_roadmap_keep keep;
+    aisle_barrier barrier;
+    uint32_t breed_limit;       // of the request's units, that this leg's genetic search ends at
     const aisle_movers *movers; // to go round, or NULL; the vehicle is at the start
     int64_t movers_us;          // then,
     bool in_motion;             // and does not stop there
@@ -258,6 +266,7 @@ typedef struct aisle_route {
     uint32_t side;                       // of the gap, left out under way
     bool no_way;                         // proved for the leg under way, exactly, by the tangent search
     bool is_wide;                        // tight ways (route_tangent.c) failed
+    bool is_unbred;                      // what the genetic search made of the seeds failed: they are the ways
     bool announced;                      // AISLE_PARTIAL was told
     bool is_cut;                         // the order is not what it would be without a limit of work
     uint32_t spent, budget, proof_units; // work units; what the first build and proof took

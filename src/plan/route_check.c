@@ -3,10 +3,11 @@
 static bool options_are_known(const aisle_options_msg *options, bool is_sampling) {
     bool planner = options->planner == AISLE_OPTIONS_AUTO || options->planner == AISLE_OPTIONS_PSO ||
                    options->planner == AISLE_OPTIONS_ASTAR || options->planner == AISLE_OPTIONS_PSO_LOCAL ||
-                   is_sampling;
+                   options->planner == AISLE_OPTIONS_GA || is_sampling;
     bool interpolation =
         options->interpolation == AISLE_OPTIONS_SPLINE || options->interpolation == AISLE_OPTIONS_LINEAR;
-    bool is_paper = options->objective == AISLE_OPTIONS_PAPER && (options->planner == AISLE_OPTIONS_PSO || is_sampling);
+    bool is_paper = options->objective == AISLE_OPTIONS_PAPER &&
+                    (options->planner == AISLE_OPTIONS_PSO || options->planner == AISLE_OPTIONS_GA || is_sampling);
     bool objective =
         is_paper || (options->objective >= AISLE_OPTIONS_SAFEST && options->objective <= AISLE_OPTIONS_LEAST_ENERGY);
     return planner && objective && interpolation && options->risk_weight >= 0.0F && options->work_units >= 0 &&

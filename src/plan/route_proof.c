@@ -24,6 +24,15 @@ static bool any_swarm_leg(const aisle_route *self) {
     return false;
 }
 
+static bool any_bred_leg(const aisle_route *self) {
+    for (uint32_t i = 0; i < (uint32_t)self->request.num_goals; i++) {
+        if (self->legs[i].is_bred) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // The planner that is told: of a way, the one that found it; AUTO's sampler has a name, too.
 static int8_t planner_of(const aisle_route *self) {
     if (self->way->kind == AISLE_WAY_LOCAL) {
@@ -33,6 +42,9 @@ static int8_t planner_of(const aisle_route *self) {
         if (self->legs[i].is_sampled) {
             return aisle_route_is_sampling(self) ? self->request.options.planner : AISLE_OPTIONS_RRT_ADAPTIVE;
         }
+    }
+    if (any_bred_leg(self)) {
+        return AISLE_OPTIONS_GA;
     }
     return any_swarm_leg(self) ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_ASTAR;
 }
@@ -83,6 +95,11 @@ static aisle_status fall_back(aisle_route *self, int16_t cause, int32_t id, aisl
     }
     if (self->way->kind == AISLE_WAY_PAPER) { // the paper's way or none
         return aisle_route_give_way_up(self, cause, id, 0.0, place);
+    }
+    if (any_bred_leg(self) && self->way->kind != AISLE_WAY_GA_PAPER) { // again, from the seeds alone
+        self->is_unbred = true;
+        aisle_route_begin_legs(self);
+        return AISLE_BUSY;
     }
     bool tight = self->way->kind <= AISLE_WAY_CLEAR && !self->is_wide && !aisle_vehicle_is_disc(self->vehicle);
     if (any_swarm_leg(self)) { // the way without it was proved before
@@ -139,7 +156,7 @@ static void begin_swarm_leg(aisle_route *self);
 // Is there nothing on this way that a swarm could improve?
 static bool is_settled(const aisle_route *self) {
     if (self->request.options.planner == AISLE_OPTIONS_ASTAR || self->way->kind == AISLE_WAY_LOCAL ||
-        self->way->kind == AISLE_WAY_SAMPLE || self->stops) {
+        self->way->kind == AISLE_WAY_SAMPLE || self->request.options.planner == AISLE_OPTIONS_GA || self->stops) {
         return true;
     }
     if (self->request.options.planner == AISLE_OPTIONS_PSO) {

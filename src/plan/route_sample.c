@@ -60,8 +60,7 @@ static aisle_rrt_config config_of(const aisle_route *self) {
     return cfg;
 }
 
-// This leg's even share of what the trees may still spend.
-static uint32_t limit_of(const aisle_route *self) {
+uint32_t aisle_route_share(const aisle_route *self) {
     const uint32_t all = self->budget - self->budget / SHARE;
     const uint32_t legs = (uint32_t)self->request.num_goals - self->leg;
     return self->spent < all ? self->spent + (all - self->spent) / legs : self->spent;
@@ -86,7 +85,7 @@ static void begin_search(aisle_route *self) {
     aisle_vehicle_space_begin(&sample->configurations, &self->space,
                               has_heading ? AISLE_VEHICLE_SPACE_POSE : AISLE_VEHICLE_SPACE_PLACE);
     find_ends(self);
-    sample->limit = sample->is_spare ? self->budget - (self->budget - self->spent) / 2U : limit_of(self);
+    sample->limit = sample->is_spare ? self->budget - (self->budget - self->spent) / 2U : aisle_route_share(self);
     self->stage = AISLE_ROUTE_SAMPLE;
     if (is_by_roadmap(self)) {
         aisle_route_begin_roadmap(self);
@@ -131,21 +130,12 @@ bool aisle_route_begin_spare(aisle_route *self) {
 
 // No way was found. The reason that is known is told; one that sampling alone was asked for gets WHY to look for a proof.
 aisle_status aisle_route_no_sampled_way(aisle_route *self) {
-    const aisle_goal_msg *goal = &self->request.goals[self->leg];
     if (self->sample.is_spare) {
         self->legs[self->leg].is_sampled = false;
         self->stage = AISLE_ROUTE_END;
         return AISLE_OK;
     }
-    (void)aisle_route_refuse_at(self, AISLE_STATUS_BUDGET, goal->id, (double)self->spent, aisle_route_place(goal));
-    aisle_route_name_goal(self, goal);
-    if (aisle_zones_any_directed(self->layout) || !aisle_layout_has_blocks(self->layout)) {
-        return AISLE_OK;
-    }
-    self->legs[self->leg].attempt = AISLE_ROUTE_ATTEMPTS_CHEAP; // no seed is tried after the proof
-    self->no_way = false;
-    aisle_route_begin_why(self, 1U);
-    return AISLE_BUSY;
+    return aisle_route_refuse_unproved(self);
 }
 
 // ---- PULL, SHORTEN

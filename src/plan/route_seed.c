@@ -125,6 +125,8 @@ void aisle_route_next_leg(aisle_route *self) {
         aisle_route_begin_repair_leg(self);
     } else if (self->leg < (uint32_t)self->request.num_goals && self->way->kind == AISLE_WAY_SAMPLE) {
         aisle_route_begin_sample_leg(self);
+    } else if (self->leg < (uint32_t)self->request.num_goals && self->way->kind == AISLE_WAY_GA_PAPER) {
+        aisle_route_begin_ga_paper_leg(self);
     } else if (self->leg < (uint32_t)self->request.num_goals) {
         begin_leg(self);
     } else {
@@ -178,6 +180,9 @@ aisle_status aisle_route_step_seed(aisle_route *self, uint32_t units) {
 aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units) {
     if (aisle_taut_step(&self->taut, units, &self->spent) == AISLE_OK) {
         self->legs[self->leg].count = self->taut.count;
+        if (aisle_route_begin_ga(self)) {
+            return AISLE_BUSY;
+        }
         self->point_count += self->taut.count;
         aisle_route_next_leg(self);
     }

@@ -3,7 +3,7 @@
 // route.c: memory, budget, the order of stages. route_cache.c: RECALL, REPROVE. route_repair.c: REPAIR. route_check.c: CHECK, NEAREST.
 // route_order.c: ORDER. route_tangent.c: TANGENT. route_manoeuvre.c: MANOEUVRE. route_seed.c: SEED, TAUT.
 // route_zones.c: ONE_WAY. route_why.c: WHY, OPENING. route_proof.c: BUILD, VERIFY, SWARM. route_paper.c: PAPER. route_local.c: LOCAL.
-// route_sample.c, route_roadmap.c: SAMPLE.
+// route_sample.c, route_roadmap.c: SAMPLE. route_ga.c: GA.
 // Steps spend about `units`; AISLE_BUSY: go on, AISLE_PARTIAL: the first proof is ready, AISLE_OK: the request has
 // ended.
 #ifndef AISLE_PLAN_ROUTE_STAGES_H
@@ -146,6 +146,8 @@ aisle_status aisle_route_step_taut(aisle_route *self, uint32_t units);
 // Asks why there is no seed for the leg under way; stride: cells, of the searches for width.
 void aisle_route_begin_why(aisle_route *self, uint32_t stride);
 aisle_status aisle_route_step_why(aisle_route *self, uint32_t units);
+// A search that proves nothing found no way: BUDGET, and WHY to look for a proof.
+aisle_status aisle_route_refuse_unproved(aisle_route *self);
 // OPENING: what would have to go; the cause is told already.
 aisle_status aisle_route_step_sides(aisle_route *self, uint32_t units); // SIDES: the same
 aisle_status aisle_route_step_opening(aisle_route *self, uint32_t units);
@@ -166,6 +168,15 @@ aisle_status aisle_route_step_one_way(aisle_route *self, uint32_t units);
 void aisle_route_begin_paper(aisle_route *self);
 aisle_status aisle_route_step_paper(aisle_route *self, uint32_t units);
 
+// route_ga.c: the genetic search.
+
+// The paper's form in place of everything before BUILD.
+void aisle_route_begin_ga_paper(aisle_route *self);
+void aisle_route_begin_ga_paper_leg(aisle_route *self);
+// Planner GA: begins to breed the leg under way, whose seed lies in the points. False: not asked for, done, or not possible.
+bool aisle_route_begin_ga(aisle_route *self);
+aisle_status aisle_route_step_ga(aisle_route *self, uint32_t units);
+
 // route_local.c: the local swarm in place of everything before BUILD.
 void aisle_route_begin_local(aisle_route *self);
 aisle_status aisle_route_step_local(aisle_route *self, uint32_t units);
@@ -182,6 +193,8 @@ aisle_status aisle_route_take_sampled_way(aisle_route *self);
 aisle_status aisle_route_no_sampled_way(aisle_route *self);
 // Is it one of those by name?
 bool aisle_route_is_sampling(const aisle_route *self);
+// Work units at which the leg under way ends its search: its even share of the half of the budget that searches have.
+uint32_t aisle_route_share(const aisle_route *self);
 
 // route_roadmap.c: what SAMPLE does for PRM. The leg's ends are in sample.start and sample.goal.
 void aisle_route_begin_roadmap(aisle_route *self);

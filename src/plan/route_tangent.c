@@ -146,6 +146,9 @@ static void go_on(aisle_route *self, bool found) {
             aisle_route_begin_taut(self, leg->count);
             return;
         }
+        if (aisle_route_begin_ga(self)) {
+            return;
+        }
         self->point_count += leg->count;
         aisle_route_next_leg(self);
     } else if (leg->is_slit) {

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #define SHORT_SLACK 2e-4 // m, what a disc's exact way keeps beyond the margin, for the proof: nobody searches about it
+#define BRED_SLACK 6e-4  // m, likewise: the sweeps that judge what is bred of it keep AISLE_SPACE_SLACK
 #define RISK_STEP 1e-4   // risks nearer to each other than this are alike
 #define LENGTH_SPAN 1048576.0 // m, no path is so long
 
@@ -24,6 +25,7 @@ static const aisle_way quickest[] = {{AISLE_WAY_SHORT, AISLE_OPTIONS_SHORTEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_FASTEST},
                                      {AISLE_WAY_GRID, AISLE_OPTIONS_LEAST_ENERGY}};
 static const aisle_way papers = {AISLE_WAY_PAPER, AISLE_OPTIONS_SHORTEST};
+static const aisle_way ga_papers = {AISLE_WAY_GA_PAPER, AISLE_OPTIONS_SHORTEST};
 static const aisle_way local = {AISLE_WAY_LOCAL, AISLE_OPTIONS_SHORTEST};
 static const aisle_way repaired[] = {{AISLE_WAY_REPAIR, AISLE_OPTIONS_SAFEST},
                                      {AISLE_WAY_REPAIR, AISLE_OPTIONS_SHORTEST},
@@ -45,6 +47,10 @@ static const aisle_way *way_of(const aisle_route *self, uint32_t n) {
     if (self->request.options.planner == AISLE_OPTIONS_PSO) { // the swarm by name: on its own objective's seed alone
         const aisle_way *way = wish == AISLE_OPTIONS_PAPER ? &papers : &by_grid[wish];
         return n == 0U ? way : NULL;
+    }
+    if (self->request.options.planner == AISLE_OPTIONS_GA) {
+        const aisle_way *way = wish == AISLE_OPTIONS_PAPER ? &ga_papers : &by_grid[wish];
+        return n == 0U ? (wish == AISLE_OPTIONS_SHORTEST ? &shortest[0] : way) : NULL;
     }
     if (self->request.options.planner == AISLE_OPTIONS_PSO_LOCAL) {
         return n == 0U ? &local : NULL;
@@ -80,7 +86,8 @@ static void begin_way(aisle_route *self) {
     AISLE_ASSERT(known);
     self->objective.has_tolls = aisle_zones_any_toll(self->layout, self->objective.kind);
     bool is_short = self->way->kind == AISLE_WAY_SHORT && aisle_vehicle_is_disc(vehicle);
-    double keep = vehicle->margin + (is_short ? SHORT_SLACK : AISLE_SPACE_SLACK);
+    bool is_bred = self->request.options.planner == AISLE_OPTIONS_GA;
+    double keep = vehicle->margin + (is_bred ? BRED_SLACK : (is_short ? SHORT_SLACK : AISLE_SPACE_SLACK));
     bool is_clear = self->way->kind == AISLE_WAY_CLEAR;
     self->room = is_clear ? aisle_max(vehicle->creep_clearance + AISLE_ROUTE_CREEP_SPARE, keep) : keep;
     if (self->way->kind == AISLE_WAY_PAPER) {
@@ -91,6 +98,8 @@ static void begin_way(aisle_route *self) {
         aisle_route_begin_local(self);
     } else if (self->way->kind == AISLE_WAY_SAMPLE) {
         aisle_route_begin_sample(self);
+    } else if (self->way->kind == AISLE_WAY_GA_PAPER) {
+        aisle_route_begin_ga_paper(self);
     } else {
         aisle_route_begin_legs(self);
     }
@@ -136,6 +145,7 @@ aisle_status aisle_route_next_way(aisle_route *self) {
     }
     self->stops = false;
     self->is_wide = false;
+    self->is_unbred = false;
     begin_way(self);
     return self->way->kind == AISLE_WAY_GRID ? aisle_route_announce(self) : AISLE_BUSY;
 }

@@ -9,6 +9,19 @@ void aisle_route_begin_why(aisle_route *self, uint32_t stride) {
     self->stage = AISLE_ROUTE_WHY;
 }
 
+aisle_status aisle_route_refuse_unproved(aisle_route *self) {
+    const aisle_goal_msg *goal = &self->request.goals[self->leg];
+    (void)aisle_route_refuse_at(self, AISLE_STATUS_BUDGET, goal->id, (double)self->spent, aisle_route_place(goal));
+    aisle_route_name_goal(self, goal);
+    if (aisle_zones_any_directed(self->layout) || !aisle_layout_has_blocks(self->layout)) {
+        return AISLE_OK;
+    }
+    self->legs[self->leg].attempt = AISLE_ROUTE_ATTEMPTS_CHEAP; // no seed is tried after the proof
+    self->no_way = false;
+    aisle_route_begin_why(self, 1U);
+    return AISLE_BUSY;
+}
+
 static aisle_status refuse_no_path(aisle_route *self) {
     const aisle_goal_msg *goal = &self->request.goals[self->leg];
     (void)aisle_route_refuse_at(self, AISLE_STATUS_NO_PATH, goal->id, 0.0, aisle_route_place(goal));
