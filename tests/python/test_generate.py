@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "tools" / "bench"))
 import exact  # noqa: E402
 import generate  # noqa: E402
 
-ALL = generate.STANDARD + generate.CLOSED
+ALL = generate.STANDARD + generate.CLOSED + generate.BARRIERS
 
 
 @pytest.mark.parametrize("family, make, arguments", ALL)

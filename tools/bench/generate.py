@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Generated polygon scenarios and their optima, in the format of tests/data/scenarios: the same seed, the same files.
 
-build/venv/bin/python tools/bench/generate.py FOLDER [--seed 1] [--set standard|closed] [--count N]
+build/venv/bin/python tools/bench/generate.py FOLDER [--seed 1] [--set standard|closed|barriers] [--count N]
 
 standard: clutter (convex polygons of 3 to 8 corners, many overlap), boxes (turned, overlapping), aisles (racks, straight
 or slanted), rooms (walls, doors, furniture), slits (the only way or the shorter one, wider than the disc by 1, 3 and
 10 %): every leg has a way, and but for slits none that a millimetre more radius would close. closed: slits narrower
 than the disc by 0.1, 1 and 3 %, goals walled in: no leg has one (null in optimum.json; optimum_table.py knows that).
---count: rounds of either set, each of a seed of its own, for larger trials.
+barriers: one to eight walls across, each with one or two openings. --count: rounds of a set, each of a seed of its own, for larger trials.
 """
 
 from __future__ import annotations
@@ -160,6 +160,20 @@ def slits(rng: random.Random, excess: float, detour: bool, walls: int = 3) -> tu
     return (side, side), radius, polygons, ends
 
 
+def barriers(rng: random.Random, layers: int) -> tuple:
+    """Walls across, evenly, each with one or two openings; the ends of barrier_1 to 4."""
+    side, radius, polygons = 15.0, 0.3, []
+    for i in range(layers):
+        doors: list = []
+        while len(doors) < 1 + (rng.random() < 0.3):
+            width = 2.0 * radius * rng.uniform(1.3, 2.5)
+            middle = rng.uniform(0.5 + 0.5 * width, side - 0.5 - 0.5 * width)
+            if all(abs(middle - m) > width + w for m, w in doors):
+                doors.append((middle, width))
+        polygons += wall_with_doors(rng, (-1.0, side + 1.0, side / (layers + 1) * (i + 1)), doors, 0.15, True)
+    return (side, side), radius, polygons, [[0.0, 1.0], [15.0, 9.0]]
+
+
 def walled_in(rng: random.Random, count: int) -> tuple:
     """A ring of overlapping boxes round the goal, clutter elsewhere."""
     side, radius, x, y = 20.0, radius_of(rng, 0.2, 0.4), 14.0, 13.0
@@ -172,6 +186,7 @@ def walled_in(rng: random.Random, count: int) -> tuple:
     return (side, side), radius, polygons, [[1.0, 1.0], [x, y]]
 
 
+LAYERS_MAX = 8
 STANDARD = [
     *[("clutter", clutter, (n,)) for n in (10, 15, 20, 30, 40, 60, 80, 100, 130, 160, 220, 300)],
     *[("boxes", boxes, (n,)) for n in (12, 20, 30, 50, 80, 120)],
@@ -183,6 +198,9 @@ CLOSED = [
     *[("closed", slits, (share, False, walls)) for share, walls in ((-0.001, 1), (-0.01, 2), (-0.03, 3))],
     *[("walled", walled_in, (n,)) for n in (0, 10, 30)],
 ]
+
+BARRIERS = [("barriers", barriers, (n,)) for n in range(1, LAYERS_MAX + 1)]
+SETS = {"standard": STANDARD, "closed": CLOSED, "barriers": BARRIERS}
 
 
 def room_at(polygons: list, x: float, y: float) -> float:
@@ -261,14 +279,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--set", choices=("standard", "closed"), default="standard")
+    parser.add_argument("--set", choices=sorted(SETS), default="standard")
     parser.add_argument("--count", type=int, default=1, metavar="N", help="rounds")
     parser.add_argument("--program", type=Path, default=exact.PROGRAM, help="optimum")
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
     optima, number = {}, {}
     for i in range(args.count):
-        for k, (family, make, arguments) in enumerate(STANDARD if args.set == "standard" else CLOSED):
+        for k, (family, make, arguments) in enumerate(SETS[args.set]):
             number[family] = number.get(family, 0) + 1
             name = f"{family}_{number[family]:02d}"
             data, optima[name] = one(family, make, arguments, f"{args.seed + i} {k}", args.program)
