@@ -25,7 +25,7 @@ def test_barriers_have_as_many_walls_with_an_opening(layers):
 
 def test_pieces_cross_where_the_disc_meets_a_wall():
     b = barrier(1)  # its wall from 7.35 to 7.65, open from 11.2 to 12.4
-    assert paper5.crossing(b, np.array([[0.0, 1.0], [7.0, 5.0], [8.0, 5.0], [15.0, 9.0]])) == 3  # 7.0 is nearer than 0.3
+    assert paper5.crossing(b, np.array([[0.0, 1.0], [7.2, 5.0], [7.8, 5.0], [15.0, 9.0]])) == 3
     free = np.array([[0.0, 1.0], [6.0, 11.8], [9.0, 11.8], [15.0, 9.0]])
     assert paper5.crossing(b, free) == 0
     assert paper5.crossing(b, free + [0.0, 0.2]) == 0 and paper5.crossing(b, free + [0.0, 0.4]) == 1
