@@ -43,6 +43,10 @@
 // ids or times of messages), and a query or goal list that asks the same gets it, path_msg.cached set, after a proof on
 // the layout in force. A changed layout keeps what it does not touch (plan/cache.h says by what rule, and what that
 // promises of its length).
+// Arms: an arm goal is planned in its turn like a query, from the pose that was in force when it was submitted, and answered by one
+// arm_path_t: a proved motion or its cause. It moves while the vehicle rests: a pose that is missing, stale (the vehicle's pose_timeout)
+// or not at rest then is the answer's cause. arm_goal_t.lcm and arm_path_t.lcm say what is proved. A library built without the arm
+// (AISLE_ARM=OFF) answers NO_ARM.
 // Threads: one planner, one thread at a time. Planners share nothing.
 #ifndef AISLE_PLANNER_H
 #define AISLE_PLANNER_H
@@ -89,7 +93,8 @@ typedef enum aisle_input_kind {
     AISLE_INPUT_GOALS,
     AISLE_INPUT_QUERY,
     AISLE_INPUT_OBSTACLES,
-    AISLE_INPUT_COMMAND
+    AISLE_INPUT_COMMAND,
+    AISLE_INPUT_ARM_GOAL
 } aisle_input_kind;
 
 // One decoded message; only the pointer named by kind is read, and only during submit().
@@ -105,15 +110,17 @@ typedef struct aisle_input {
         const aisle_query_msg *query;
         const aisle_obstacles_msg *obstacles;
         const aisle_command_msg *command;
+        const aisle_arm_goal_msg *arm_goal;
     } as;
 } aisle_input;
 
 typedef enum aisle_event_kind {
-    AISLE_EVENT_PATH, // for _PATH: a new path, the same one with its lease renewed, or a revocation
-    AISLE_EVENT_REPLY // for _REPLY: the answer to a query
+    AISLE_EVENT_PATH,    // for _PATH: a new path, the same one with its lease renewed, or a revocation
+    AISLE_EVENT_REPLY,   // for _REPLY: the answer to a query
+    AISLE_EVENT_ARM_PATH // for _ARM_PATH: the answer to an arm's goal, an arm_path_t
 } aisle_event_kind;
 
-// An encoded path_t, proved by the verifier or with status NONE. Bytes stay valid until the next
+// An encoded path_t (arm_path_t with ARM_PATH), proved by the verifier or with status NONE. Bytes stay valid until the next
 // call that takes a non-const planner.
 typedef struct aisle_event {
     aisle_event_kind kind;
@@ -151,6 +158,8 @@ typedef enum aisle_counter {
     AISLE_COUNTER_CACHE_REPAIRED,   // among the misses: made of the free pieces of an answer that was remembered
     AISLE_COUNTER_ROADMAPS,         // roadmaps of PRM begun from nothing
     AISLE_COUNTER_ROADMAP_REPAIRS,  // and repaired where a layout had changed
+    AISLE_COUNTER_ARM_GOALS,        // arm goals answered
+    AISLE_COUNTER_ARM_PATHS,        // with a proved motion
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

@@ -63,8 +63,12 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits) {
     row(self, arena, &from, "planner");
     aisle_layout_carve(layout != NULL ? layout : &layout_instead, arena, limits);
     row(self, arena, &from, "layout and grid");
-    aisle_route_carve(route, arena, limits);
+    aisle_arena lent;
+    aisle_route_carve_lending(route, arena, limits, aisle_planner_arm_lent(limits), &lent);
     row(self, arena, &from, "search and paths");
+    aisle_planner_arm *arm = (aisle_planner_arm *)aisle_arena_take(arena, 1U, sizeof(aisle_planner_arm));
+    aisle_planner_arm_carve(arm, &lent, limits);
+    row(self, arena, &from, "arm, beside the searches'");
     aisle_route_carve_cache(route, arena, limits);
     row(self, arena, &from, "remembered paths");
     aisle_route_carve_roadmap(route, arena, limits);
@@ -81,6 +85,7 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits) {
     if (self != NULL) {
         self->layout = layout;
         self->route = route;
+        self->arm = arm;
         self->queue = (aisle_request *)queue;
     }
     return self;
@@ -178,7 +183,9 @@ static void begin_next(aisle_planner *self) {
     aisle_request *request = &self->queue[self->queue_head];
     self->queue_head = (self->queue_head + 1U) % self->config.limits.requests;
     self->queue_count--;
-    if (!is_stale(self, request)) { // else cancelled or overtaken by a newer goal list
+    if (request->is_arm) {
+        aisle_planner_arm_begin(self, request);
+    } else if (!is_stale(self, request)) { // else cancelled or overtaken by a newer goal list
         begin(self, request);
     }
 }
@@ -275,7 +282,7 @@ static void step_layout(aisle_planner *self, uint32_t units) {
 // ---- public
 
 static bool events_wait(const aisle_planner *self) {
-    return self->out[0].waiting || self->out[1].waiting;
+    return self->out[0].waiting || self->out[1].waiting || self->arm->waiting;
 }
 
 aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t work_units) {
@@ -293,6 +300,8 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
         aisle_planner_step_weighing(self, work_units);
     } else if (self->planning) {
         step_route(self, work_units);
+    } else if (self->arm->planning) {
+        aisle_planner_arm_step(self, work_units);
     } else if (self->queue_count > 0U || self->mission.replan) {
         begin_next(self);
     }
@@ -311,7 +320,7 @@ bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {
             return true;
         }
     }
-    return false;
+    return aisle_planner_arm_event(self, event);
 }
 
 int64_t aisle_planner_next_deadline(const aisle_planner *self) {

@@ -6,7 +6,7 @@
 
 #define HEADING_MAX 1e4 // rad of a stop's heading; also of its tolerances, in their units
 bool aisle_planner_is_busy(const aisle_planner *self) {
-    return self->planning || self->building || self->queue_count > 0 || self->mission.replan ||
+    return self->planning || self->arm->planning || self->building || self->queue_count > 0 || self->mission.replan ||
            self->drive.stage != AISLE_DRIVE_IDLE || self->weighing != AISLE_WEIGHING_NOTHING;
 }
 

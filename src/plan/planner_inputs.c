@@ -204,6 +204,12 @@ static aisle_status take_query(aisle_planner *self, const aisle_query_msg *msg) 
     return enqueue(self, &request);
 }
 
+static aisle_status take_arm_goal(aisle_planner *self, const aisle_arm_goal_msg *msg) {
+    aisle_request request = {.is_arm = true, .arm_goal = *msg};
+    aisle_planner_arm_note_pose(self, &request);
+    return enqueue(self, &request);
+}
+
 // Nothing is left to do: a vehicle that moves is stopped by the next cycle.
 static void end_mission(aisle_planner *self) {
     self->cycle_wanted = true;
@@ -326,6 +332,8 @@ static aisle_status dispatch(aisle_planner *self, const aisle_input *input) {
         return take_obstacles(self, input->as.obstacles);
     case AISLE_INPUT_COMMAND:
         return take_command(self, input->as.command);
+    case AISLE_INPUT_ARM_GOAL:
+        return take_arm_goal(self, input->as.arm_goal);
     default:
         return AISLE_ERR_ARG;
     }

@@ -2,11 +2,12 @@
 //
 // planner.c: memory, step, events. planner_inputs.c: what each message does. planner_hindrance.c: what keeps a request or
 // a lease from going on. planner_drive.c: the cycle of a mission under way. planner_answer.c: paths and reasons out.
-// planner_status.c: the heartbeat, names of causes.
+// planner_arm.c: goals of the arm. planner_status.c: the heartbeat, names of causes.
 #ifndef AISLE_PLAN_PLANNER_STATE_H
 #define AISLE_PLAN_PLANNER_STATE_H
 
 #include "aisle/planner.h"
+#include "plan/arm_route.h"
 #include "plan/drive.h"
 #include "plan/mission.h"
 #include "plan/pace_predict.h"
@@ -14,7 +15,8 @@
 #include "world/movers.h"
 
 #define AISLE_REFUSAL_BYTES 1024U // of an encoded path_t with at most AISLE_ROUTE_TOLD_MAX waypoints
-#define AISLE_MEMORY_ROWS 9U
+#define AISLE_MEMORY_ROWS 10U
+#define AISLE_ARM_REFUSAL_BYTES 256U // of an encoded arm_path_t without waypoints
 
 typedef struct aisle_outgoing { // a path_t waiting to be pulled
     const uint8_t *bytes;
@@ -23,6 +25,17 @@ typedef struct aisle_outgoing { // a path_t waiting to be pulled
     const aisle_moving_stamp *moving; // of a path to drive
     bool waiting;
 } aisle_outgoing;
+
+typedef struct aisle_planner_arm {
+    aisle_arm_route route;
+    bool planning;
+    int32_t revision; // of the last arm_path_t
+    uint8_t refusal[AISLE_ARM_REFUSAL_BYTES];
+    const uint8_t *bytes; // waiting to be pulled
+    size_t size;
+    const aisle_stamp *stamp; // NULL: a refusal
+    bool waiting;
+} aisle_planner_arm;
 
 typedef struct aisle_leaving { // where a plan made under way leaves the one before
     bool under_way;            // else it begins where the vehicle stands
@@ -67,6 +80,7 @@ struct aisle_planner {
     uint32_t queue_head, queue_count;
     aisle_route *route;
     bool planning;
+    aisle_planner_arm *arm;
     aisle_mission mission;
     int32_t path_revision;
     aisle_path_msg *head;  // of answers; waypoints unused but those of a refusal
@@ -126,6 +140,20 @@ void aisle_planner_take_plan(aisle_planner *self, const aisle_request *request, 
 // None was found: said at once to a vehicle at rest, else when it has been stopped.
 void aisle_planner_take_failure(aisle_planner *self, const aisle_request *request, const aisle_refusal *why,
                                 const aisle_waypoint_msg *told, uint32_t told_count, uint32_t work_units);
+
+// planner_arm.c
+
+// Bytes that it needs of the searches' memory; its own memory and that. arm NULL: to measure only.
+size_t aisle_planner_arm_lent(const aisle_limits *limits);
+void aisle_planner_arm_carve(aisle_planner_arm *arm, aisle_arena *lent, const aisle_limits *limits);
+// Notes where the vehicle is, or why the arm may not move from there.
+void aisle_planner_arm_note_pose(const aisle_planner *self, aisle_request *request);
+// Begins with a request that is_arm, or refuses it.
+void aisle_planner_arm_begin(aisle_planner *self, const aisle_request *request);
+// Goes on with it.
+void aisle_planner_arm_step(aisle_planner *self, uint32_t units);
+// Pulls the answer that waits; false: none.
+bool aisle_planner_arm_event(aisle_planner *self, aisle_event *event);
 
 // planner_inputs.c
 

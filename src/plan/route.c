@@ -49,7 +49,9 @@ static void carve_ask(aisle_route *self, part *instead, aisle_arena *arena, cons
 
 // No leg is searched two ways at a time: the other searches lie where the grid search does. Nor
 // is anything searched while an order is computed.
-static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits) {
+static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena, const aisle_limits *limits,
+                           size_t lend) {
+    const size_t lent_end = arena->used + lend;
     aisle_arena shared[7] = {*arena, *arena, *arena, *arena, *arena, *arena, *arena};
     aisle_tangent_carve(PART(self, instead, tangent), &shared[0], limits);
     aisle_manoeuvre_carve(PART(self, instead, manoeuvre), &shared[1], limits);
@@ -63,6 +65,8 @@ static void carve_searches(aisle_route *self, part *instead, aisle_arena *arena,
         arena->overflow = arena->overflow || shared[i].overflow;
         arena->used = arena->used > shared[i].used ? arena->used : shared[i].used;
     }
+    arena->overflow = arena->overflow || lent_end > arena->size;
+    arena->used = arena->used > lent_end ? arena->used : lent_end;
 }
 
 static void carve_buffers(aisle_route *self, aisle_arena *arena) {
@@ -92,11 +96,19 @@ static void carve_buffers(aisle_route *self, aisle_arena *arena) {
 }
 
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits) {
+    aisle_route_carve_lending(self, arena, limits, 0, NULL);
+}
+
+void aisle_route_carve_lending(aisle_route *self, aisle_arena *arena, const aisle_limits *limits, size_t bytes,
+                               aisle_arena *lent) {
     part measured;
     memset(&measured, 0, sizeof measured);
     part *instead = &measured;
     aisle_space_carve(PART(self, instead, space), arena, limits->cells);
-    carve_searches(self, instead, arena, limits);
+    if (lent != NULL) {
+        *lent = *arena;
+    }
+    carve_searches(self, instead, arena, limits, bytes);
     aisle_manoeuvre_carve_way(PART(self, instead, manoeuvre), arena);
     aisle_tour_carve(PART(self, instead, tour), arena);
     aisle_swarm_carve(PART(self, instead, swarm), arena);

@@ -107,6 +107,11 @@ typedef struct aisle_request { // a query, or a goal list with the pose it start
     aisle_goal_msg goals[AISLE_GOAL_LIST_MAX_GOALS];
     int16_t kept;    // of goals in any order: the first so many keep their place
     uint32_t serial; // of the mission, which knows by it what is out of date
+    bool is_arm;     // an arm's goal instead: of all the others only pose_utime counts
+    aisle_arm_goal_msg arm_goal;
+    aisle_pose2 arm_pose; // of the vehicle, when that was submitted
+    int16_t arm_cause;    // why it cannot be planned from there; 0: it can
+    int32_t arm_cause_id;
 } aisle_request;
 
 typedef struct aisle_proof { // an encoded path and what it is worth
@@ -281,6 +286,10 @@ typedef struct aisle_route {
 
 // `self` may be NULL, to measure only: then no pointer is kept, and no struct of this size is needed.
 void aisle_route_carve(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
+// The same, and at least `bytes` (a multiple of AISLE_ARENA_ALIGN) of what the searches take are lent to who works only while
+// no request is under way and needs nothing of it afterwards: *lent is an arena that begins there. lent NULL: nobody.
+void aisle_route_carve_lending(aisle_route *self, aisle_arena *arena, const aisle_limits *limits, size_t bytes,
+                               aisle_arena *lent);
 void aisle_route_carve_cache(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 void aisle_route_carve_roadmap(aisle_route *self, aisle_arena *arena, const aisle_limits *limits);
 

@@ -1,0 +1,242 @@
+#include "plan/arm_search.h"
+
+#include "aisle/messages.h"
+#include "base/check.h"
+
+#include <string.h>
+
+#define GENERATIONS 60U
+#define STALL 400U         // evaluations without a better one
+#define BEND_MIDDLE 128.0F // b0: 2 rad
+#define BEND_SKEW 512.0F   // b1: 0.95 rad
+#define SPREAD 0.5F
+#define TIMING_PANELS 24U
+#define HIDDEN 1e-3 // violation of a motion that is free at all samples only
+
+#define PAPER_POPULATION 20U
+#define PAPER_GENERATIONS 100U
+#define PAPER_RANGE 100.0F // of a6 and a7
+#define PAPER_MUTATION 0.3F
+#define PAPER_PARENTS (PAPER_POPULATION / 2U) // selection 0.5
+
+static const double never = (double)INFINITY;
+
+void aisle_arm_search_carve(aisle_arm_search *self, aisle_arena *arena) {
+    const size_t length = AISLE_PSO_WORK_LEN(AISLE_ARM_GENES, AISLE_ARM_POPULATION);
+    aisle_ga_carve(self != NULL ? &self->ga : NULL, arena, AISLE_ARM_GENES, AISLE_ARM_POPULATION);
+    void *work = aisle_arena_take(arena, length, sizeof(float));
+    if (self != NULL) {
+        self->pso_work = (float *)work;
+    }
+}
+
+// ---- cost
+
+static double joints_out(const aisle_arm *arm, const double *q) {
+    double sum = 0.0;
+    for (uint32_t j = 0; j < arm->links; j++) {
+        sum += aisle_max(0.0, arm->min[j] - q[j]) + aisle_max(0.0, q[j] - arm->max[j]);
+    }
+    return sum;
+}
+
+static double sampled_depth(aisle_arm_search *self, const aisle_arm_piece *piece) {
+    double sum = 0.0, q[AISLE_ARM_LINKS];
+    for (uint32_t i = 1; i < AISLE_ARM_SAMPLES; i++) {
+        aisle_arm_piece_at(piece, (double)i / (double)AISLE_ARM_SAMPLES, 0U, q);
+        sum += aisle_arm_world_depth(self->world, q) + joints_out(self->world->arm, q);
+        self->units += 1U;
+        if (self->paper && sum > 0.0) {
+            return never;
+        }
+    }
+    return sum / (double)(AISLE_ARM_SAMPLES - 1U);
+}
+
+static double violation_of(aisle_arm_search *self, const aisle_arm_piece *piece) {
+    const double depth = sampled_depth(self, piece);
+    if (depth > 0.0) {
+        return HIDDEN + depth;
+    }
+    double until, out;
+    if (aisle_arm_piece_joint_out(piece, self->world->arm, &out) != 0U) {
+        return self->paper ? never : HIDDEN * aisle_min(1.0, 0.5 + out);
+    }
+    if (!aisle_arm_world_free(self->world, piece, &self->units, &until)) {
+        return self->paper ? never : HIDDEN * (1.0 - 0.5 * until);
+    }
+    return 0.0;
+}
+
+static double risk_of(aisle_arm_search *self, const aisle_arm_piece *piece) {
+    double sum = 0.0, q[AISLE_ARM_LINKS];
+    for (uint32_t i = 0; i <= AISLE_ARM_SAMPLES; i++) {
+        aisle_arm_piece_at(piece, (double)i / (double)AISLE_ARM_SAMPLES, 0U, q);
+        sum += 1.0 - aisle_arm_world_gap(self->world, q, AISLE_ARM_CREEP, NULL, NULL) / AISLE_ARM_CREEP;
+        self->units += 1U;
+    }
+    return sum / (double)(AISLE_ARM_SAMPLES + 1U);
+}
+
+static double work_of(const aisle_arm_search *self, const aisle_arm_piece *piece, double duration) {
+    double sum = 0.0, q[AISLE_ARM_LINKS], rate[AISLE_ARM_LINKS], change[AISLE_ARM_LINKS];
+    double inertia[AISLE_ARM_LINKS], gravity[AISLE_ARM_LINKS];
+    for (uint32_t i = 1; i < AISLE_ARM_SAMPLES; i++) { // at rest at both ends
+        const double r = (double)i / (double)AISLE_ARM_SAMPLES;
+        aisle_arm_piece_at(piece, r, 0U, q);
+        aisle_arm_piece_at(piece, r, 1U, rate);
+        aisle_arm_piece_at(piece, r, 2U, change);
+        aisle_arm_torque(&self->dynamics, q, rate, change, inertia, gravity);
+        for (uint32_t j = 0; j < piece->links; j++) {
+            const double torque = gravity[j] + inertia[j] / (duration * duration); // duration > 0
+            sum += fabs(torque * rate[j]);
+        }
+    }
+    return sum / (double)AISLE_ARM_SAMPLES;
+}
+
+static double value_of(aisle_arm_search *self, const aisle_arm_piece *piece) {
+    aisle_arm_timing timing;
+    switch (self->objective) {
+    case AISLE_OPTIONS_SAFEST:
+        return aisle_arm_piece_travel(piece) * (1.0 + self->risk_weight * risk_of(self, piece));
+    case AISLE_OPTIONS_FASTEST:
+    case AISLE_OPTIONS_LEAST_ENERGY:
+        aisle_arm_least_duration(self->world->arm, &self->dynamics, piece, TIMING_PANELS, &timing);
+        return self->objective == AISLE_OPTIONS_FASTEST || !(timing.duration > 0.0)
+                   ? timing.duration
+                   : work_of(self, piece, timing.duration);
+    default:
+        return aisle_arm_piece_travel(piece);
+    }
+}
+
+aisle_cost_pair aisle_arm_search_cost(aisle_arm_search *self, const aisle_arm_piece *piece) {
+    const double violation = violation_of(self, piece);
+    // What collides is told apart by how deep alone; its value costs as much to find and counts for little.
+    const double value = violation > 0.0 ? aisle_arm_piece_travel(piece) : value_of(self, piece);
+    return (aisle_cost_pair){.violation = (float)violation, .value = (float)value};
+}
+
+static void piece_of(const aisle_arm_search *self, const float *x, aisle_arm_piece *out) {
+    double bend[AISLE_ARM_GENES];
+    for (uint32_t j = 0; j < self->world->arm->links; j++) {
+        if (self->paper) {
+            aisle_arm_bend_of_paper((double)x[2U * j], (double)x[2U * j + 1U], &bend[2U * j]);
+        } else {
+            bend[2U * j] = (double)x[2U * j];
+            bend[2U * j + 1U] = (double)x[2U * j + 1U];
+        }
+    }
+    aisle_arm_piece_of(self->world->arm->links, self->from, self->to, bend, out);
+}
+
+static aisle_cost_pair cost(void *context, const float *x) {
+    aisle_arm_search *self = (aisle_arm_search *)context;
+    aisle_arm_piece piece;
+    piece_of(self, x, &piece);
+    const aisle_cost_pair cost = aisle_arm_search_cost(self, &piece);
+    self->evals++;
+    if (self->first == 0U && cost.violation <= 0.0F) {
+        self->first = self->evals;
+    }
+    return cost;
+}
+
+// ---- the run
+
+static void start_ga(aisle_arm_search *self, uint16_t genes, uint64_t seed) {
+    aisle_ga_config cfg = aisle_ga_modern(genes, GENERATIONS);
+    cfg.population = AISLE_ARM_POPULATION;
+    cfg.seeds = self->guess;
+    cfg.seed_count = 1U;
+    cfg.spread = SPREAD;
+    cfg.stall_max = STALL;
+    if (self->paper) {
+        cfg = (aisle_ga_config){.coding = AISLE_GA_REAL,
+                                .crossover = AISLE_GA_BLEND,
+                                .mutation = AISLE_GA_EACH,
+                                .redraw = true,
+                                .pc = 1.0F,
+                                .pm = PAPER_MUTATION,
+                                .generation_max = PAPER_GENERATIONS,
+                                .value_goal = -INFINITY,
+                                .population = PAPER_POPULATION,
+                                .elite = 1U,
+                                .parents = PAPER_PARENTS};
+    }
+    cfg.cost = cost;
+    cfg.cost_ctx = self;
+    cfg.lo = self->lo;
+    cfg.hi = self->hi;
+    cfg.genes = genes;
+    cfg.seed = seed;
+    const aisle_status st = aisle_ga_start(&self->ga, &cfg);
+    AISLE_ASSERT(st == AISLE_OK);
+}
+
+static void start_pso(aisle_arm_search *self, uint16_t genes, uint64_t seed) {
+    self->pso_config = (aisle_pso_config){.cost = cost,
+                                          .cost_ctx = self,
+                                          .lo = self->lo,
+                                          .hi = self->hi,
+                                          .guess = self->guess,
+                                          .spread = SPREAD,
+                                          .inertia = AISLE_PSO_CONSTRICTION,
+                                          .seed = seed,
+                                          .eval_max = AISLE_ARM_POPULATION * (GENERATIONS + 1U),
+                                          .stall_max = STALL,
+                                          .value_goal = -INFINITY,
+                                          .dim = genes,
+                                          .particles = AISLE_ARM_POPULATION};
+    const aisle_status st = aisle_pso_start(&self->pso, &self->pso_config, self->pso_work,
+                                            AISLE_PSO_WORK_LEN(AISLE_ARM_GENES, AISLE_ARM_POPULATION));
+    AISLE_ASSERT(st == AISLE_OK);
+}
+
+void aisle_arm_search_start(aisle_arm_search *self, const aisle_arm_world *world, const double *from, const double *to,
+                            const aisle_options_msg *options) {
+    const uint32_t links = world->arm->links;
+    const uint64_t seed = (uint64_t)(int64_t)options->seed;
+    self->world = world;
+    aisle_arm_dynamics_begin(&self->dynamics, world->arm, world->base.theta);
+    memcpy(self->from, from, links * sizeof *from);
+    memcpy(self->to, to, links * sizeof *to);
+    self->objective = options->objective;
+    self->paper = options->objective == AISLE_OPTIONS_PAPER;
+    self->swarm = options->planner == AISLE_OPTIONS_PSO && !self->paper;
+    self->risk_weight = options->risk_weight > 0.0F ? (double)options->risk_weight : 1.0;
+    self->units = self->evals = self->first = 0;
+    for (uint32_t g = 0; g < 2U * links; g++) {
+        self->hi[g] = self->paper ? PAPER_RANGE : g % 2U == 0U ? BEND_MIDDLE : BEND_SKEW;
+        self->lo[g] = -self->hi[g];
+        self->guess[g] = 0.0F;
+    }
+    if (self->swarm) {
+        start_pso(self, (uint16_t)(2U * links), seed);
+    } else {
+        start_ga(self, (uint16_t)(2U * links), seed);
+    }
+}
+
+aisle_status aisle_arm_search_step(aisle_arm_search *self, uint32_t units, uint32_t *spent) {
+    aisle_status st = AISLE_BUSY;
+    self->units = 0;
+    while (st == AISLE_BUSY && self->units < units) {
+        st = self->swarm ? aisle_pso_step(&self->pso, 1U) : aisle_ga_step(&self->ga, 1U);
+    }
+    *spent += self->units;
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    return self->first > 0U ? AISLE_OK : AISLE_PARTIAL;
+}
+
+bool aisle_arm_search_best(const aisle_arm_search *self, aisle_arm_piece *out) {
+    const float *best = self->swarm ? aisle_pso_best(&self->pso) : aisle_ga_best(&self->ga);
+    if (self->first == 0U || best == NULL) {
+        return false;
+    }
+    piece_of(self, best, out);
+    return true;
+}
