@@ -113,25 +113,29 @@ static void move_to(const double *c, uint32_t degree, double a, double b, double
     }
 }
 
-static double choose(uint32_t n, uint32_t k) {
-    double value = 1.0;
-    for (uint32_t i = 0; i < k; i++) {
-        value = value * (double)(n - i) / (double)(i + 1U);
+// Coefficients to Bernstein coefficients in place: c[j] / C(degree, j), then each sum of C(i, j) times that as a row of sums
+// of neighbours (Pascal's rule).
+static void to_bernstein(double *c, uint32_t degree) {
+    double choose = 1.0;
+    for (uint32_t j = 0; j <= degree; j++) {
+        c[j] /= choose;
+        choose = choose * (double)(degree - j) / (double)(j + 1U);
     }
-    return value;
+    for (uint32_t k = 1; k <= degree; k++) {
+        for (uint32_t i = degree; i >= k; i--) {
+            c[i] += c[i - 1U];
+        }
+    }
 }
 
 void aisle_poly_bounds(const double *c, uint32_t degree, double a, double b, double *lo, double *hi) {
     double moved[AISLE_POLY_DEGREE_MAX + 1U];
     AISLE_ASSERT(degree <= AISLE_POLY_DEGREE_MAX);
     move_to(c, degree, a, b, moved);
+    to_bernstein(moved, degree);
     *lo = *hi = moved[0];
-    for (uint32_t i = 1; i <= degree; i++) { // Bernstein coefficient i: sum of C(i,j) / C(degree,j) c[j]
-        double value = 0.0;
-        for (uint32_t j = 0; j <= i; j++) {
-            value += choose(i, j) / choose(degree, j) * moved[j];
-        }
-        *lo = aisle_min(*lo, value);
-        *hi = aisle_max(*hi, value);
+    for (uint32_t i = 1; i <= degree; i++) {
+        *lo = aisle_min(*lo, moved[i]);
+        *hi = aisle_max(*hi, moved[i]);
     }
 }

@@ -148,7 +148,7 @@ static bool find_goals(aisle_arm_route *self) {
     int32_t in_the_way = 0;
     for (uint32_t i = 0; i < goals->count; i++) {
         int32_t id = 0;
-        self->spent += 1U;
+        self->spent += AISLE_ARM_UNITS;
         if (aisle_arm_world_gap(&self->world, goals->q[i], AISLE_ARM_SIGHT, NULL, &id) >= AISLE_ARM_KEEP) {
             memmove(goals->q[kept++], goals->q[i], sizeof goals->q[0]);
         } else if (in_the_way == 0) {
@@ -176,7 +176,7 @@ static aisle_status check(aisle_arm_route *self) {
         return end(self, AISLE_STATUS_LIMIT, LIMIT_BLOCKS, (double)AISLE_ARM_BLOCKS);
     }
     aisle_arm_dynamics_begin(&self->dynamics, &self->arm, self->world.base.theta);
-    self->spent += 1U;
+    self->spent += AISLE_ARM_UNITS;
     if (aisle_arm_world_gap(&self->world, self->start, AISLE_ARM_SIGHT, NULL, &id) < AISLE_ARM_KEEP) {
         return end(self, AISLE_STATUS_START_OCCUPIED, id, 0.0);
     }
@@ -236,7 +236,7 @@ static bool is_done_with(aisle_arm_route *self, const aisle_arm_piece *piece) {
     for (uint32_t i = 0; i <= AISLE_ARM_SAMPLES; i++) {
         aisle_arm_piece_at(piece, (double)i / (double)AISLE_ARM_SAMPLES, 0U, q);
         least = aisle_min(least, aisle_arm_world_gap(&self->world, q, AISLE_ARM_CREEP, NULL, NULL));
-        self->spent += 1U;
+        self->spent += AISLE_ARM_UNITS;
     }
     return objective == AISLE_OPTIONS_SAFEST && least >= AISLE_ARM_CREEP;
 }
@@ -369,7 +369,7 @@ static aisle_status build(aisle_arm_route *self) {
         AISLE_OK) {
         return end(self, AISLE_STATUS_LIMIT, LIMIT_WAYPOINTS, (double)AISLE_ARM_PATH_MAX_WAYPOINTS);
     }
-    self->spent += (uint32_t)(uint16_t)self->path->num_waypoints;
+    self->spent += AISLE_ARM_UNITS * (uint32_t)(uint16_t)self->path->num_waypoints;
     self->path->status = AISLE_PATH_OK;
     self->path->cause = 0;
     self->path->cause_id = 0;

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-#define GENERATIONS 60U
-#define STALL 400U         // evaluations without a better one
+#define GENERATIONS 40U
+#define STALL 150U         // evaluations without a better one
 #define BEND_MIDDLE 128.0F // b0: 2 rad
 #define BEND_SKEW 512.0F   // b1: 0.95 rad
 #define SPREAD 0.5F
@@ -45,7 +45,7 @@ static double sampled_depth(aisle_arm_search *self, const aisle_arm_piece *piece
     for (uint32_t i = 1; i < AISLE_ARM_SAMPLES; i++) {
         aisle_arm_piece_at(piece, (double)i / (double)AISLE_ARM_SAMPLES, 0U, q);
         sum += aisle_arm_world_depth(self->world, q) + joints_out(self->world->arm, q);
-        self->units += 1U;
+        self->units += AISLE_ARM_UNITS;
         if (self->paper && sum > 0.0) {
             return never;
         }
@@ -73,7 +73,7 @@ static double risk_of(aisle_arm_search *self, const aisle_arm_piece *piece) {
     for (uint32_t i = 0; i <= AISLE_ARM_SAMPLES; i++) {
         aisle_arm_piece_at(piece, (double)i / (double)AISLE_ARM_SAMPLES, 0U, q);
         sum += 1.0 - aisle_arm_world_gap(self->world, q, AISLE_ARM_CREEP, NULL, NULL) / AISLE_ARM_CREEP;
-        self->units += 1U;
+        self->units += AISLE_ARM_UNITS;
     }
     return sum / (double)(AISLE_ARM_SAMPLES + 1U);
 }

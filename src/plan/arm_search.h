@@ -10,7 +10,8 @@
 // out is never worse. PAPER is the paper's own search (Machmudah et al. 2012): 20 points, 100 generations, selection 0.5, mutation
 // 0.3, its coefficients a6 and a7 in [-100, 100], value as SHORTEST, and the death penalty: whoever collides is not allowed at
 // all, and until one that does not was seen each population is drawn anew. The proof of the whole motion is ours there, too.
-// Memory: the caller's arena, a few KiB. Time: units are configurations looked at, about AISLE_ARM_SAMPLES a candidate.
+// Memory: the caller's arena, a few KiB. Time: AISLE_ARM_SAMPLES configurations a candidate, and of one that is free there those
+// of the proof.
 #ifndef AISLE_PLAN_ARM_SEARCH_H
 #define AISLE_PLAN_ARM_SEARCH_H
 

@@ -101,6 +101,7 @@ aisle_status aisle_arm_world_begin(aisle_arm_world *self, const aisle_layout *la
     self->count = 0;
     self->bounds = aisle_layout_bounds(layout);
     self->body = aisle_vehicle_place(vehicle, pose, 0.0, self->outline);
+    self->body_box = aisle_convex_aabb(&self->body);
     self->exempt = aisle_arm_mount(arm, vehicle);
     double wide = 0.0;
     for (uint32_t i = 0; i < arm->links; i++) {
@@ -175,10 +176,10 @@ static least link_gap(const aisle_arm_world *self, const limb *links, const limb
             lower_by_shape(&best, &links[i], &self->block[k].shape, self->block[k].id);
         }
     }
-    if (own[i].radius >= 0.0) {
+    if (own[i].radius >= 0.0 && aisle_aabb_gap(own[i].box, self->body_box) < best.gap + own[i].radius) {
         lower_by_shape(&best, &own[i], &self->body, AISLE_ARM_ID_BODY);
     }
-    if (i == 2U) {
+    if (i == 2U && aisle_aabb_gap(links[2].box, links[0].box) < best.gap + links[2].radius + links[0].radius) {
         const aisle_convex first = {links[0].axis, 2U, links[0].radius};
         lower_by_shape(&best, &links[2], &first, AISLE_ARM_ID_ARM);
     }
@@ -239,7 +240,7 @@ static double link_depth(const aisle_arm_world *self, const limb *links, const l
             sum += depth_in(&links[i], &self->block[k].shape);
         }
     }
-    if (own[i].radius >= 0.0) {
+    if (own[i].radius >= 0.0 && aisle_aabb_gap(own[i].box, self->body_box) < want) {
         sum += depth_in(&own[i], &self->body);
     }
     if (i == 2U) {
@@ -275,12 +276,12 @@ static double step_of(const aisle_arm_world *self, uint32_t i, const double *rat
 
 bool aisle_arm_world_free(const aisle_arm_world *self, const aisle_arm_piece *piece, uint32_t *units, double *until) {
     double change[AISLE_ARM_LINKS], r = 0.0;
-    aisle_arm_piece_peaks(piece, 2U, change);
+    aisle_arm_piece_bounds(piece, 2U, change);
     for (;;) {
         double q[AISLE_ARM_LINKS], rate[AISLE_ARM_LINKS], gaps[AISLE_ARM_LINKS], h = 1.0;
         aisle_arm_piece_at(piece, r, 0U, q);
         aisle_arm_piece_at(piece, r, 1U, rate);
-        *units += 1U;
+        *units += AISLE_ARM_UNITS;
         const bool is_free = aisle_arm_world_gap(self, q, AISLE_ARM_SIGHT, gaps, NULL) >= AISLE_ARM_KEEP;
         for (uint32_t i = 0; is_free && i < piece->links; i++) {
             h = aisle_min(h, step_of(self, i, rate, change, gaps[i] - AISLE_ARM_KEEP * 0.5));

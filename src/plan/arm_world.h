@@ -13,7 +13,7 @@
 // so as long as that is less than what is free around it nothing touches; |dq_j| over a step h is at most |q'_j| h + max|q''_j|
 // h^2 / 2. Shares no code with the proof of what leaves (verify_arm.h).
 // Memory: the caller's arena, 128 bytes an obstacle. Time: begin O(zones and scan rows in reach); a gap O(obstacles near a
-// link). Units: 1 a configuration looked at.
+// link). Units: AISLE_ARM_UNITS a configuration looked at.
 #ifndef AISLE_PLAN_ARM_WORLD_H
 #define AISLE_PLAN_ARM_WORLD_H
 
@@ -25,6 +25,7 @@
 #define AISLE_ARM_ID_ARM (-4)   // and of the arm's own first link
 #define AISLE_ARM_KEEP 1e-3     // m, that every motion keeps off everything
 #define AISLE_ARM_BLOCKS 1024U  // obstacles in reach
+#define AISLE_ARM_UNITS 10U     // work units, of a configuration looked at: about a microsecond
 #define AISLE_ARM_STEP_MIN 1e-7 // of a piece: a shorter step forward is none
 
 typedef struct aisle_arm_block {
@@ -42,6 +43,7 @@ typedef struct aisle_arm_world {
     aisle_aabb bounds;
     aisle_vec2 outline[AISLE_SHAPE_VERTICES_MAX];
     aisle_convex body;
+    aisle_aabb body_box;
     double exempt; // m, of the first link from the base on
 } aisle_arm_world;
 

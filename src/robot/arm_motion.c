@@ -60,6 +60,16 @@ void aisle_arm_piece_peaks(const aisle_arm_piece *self, uint32_t order, double *
     }
 }
 
+void aisle_arm_piece_bounds(const aisle_arm_piece *self, uint32_t order, double *out) {
+    for (uint32_t j = 0; j < self->links; j++) {
+        double c[AISLE_ARM_DEGREE + 1U], lo[2], hi[2];
+        const uint32_t degree = derive(self, j, order, c);
+        aisle_poly_bounds(c, degree, 0.0, 0.5, &lo[0], &hi[0]);
+        aisle_poly_bounds(c, degree, 0.5, 1.0, &lo[1], &hi[1]);
+        out[j] = aisle_max(aisle_max(-lo[0], hi[0]), aisle_max(-lo[1], hi[1]));
+    }
+}
+
 // ---- travel
 
 double aisle_arm_piece_travel(const aisle_arm_piece *self) {
@@ -95,7 +105,10 @@ uint32_t aisle_arm_piece_joint_out(const aisle_arm_piece *self, const aisle_arm 
     double sum = 0.0;
     for (uint32_t j = 0; j < self->links; j++) {
         double lo, hi;
-        aisle_poly_range(self->c[j], AISLE_ARM_DEGREE, &lo, &hi);
+        aisle_poly_bounds(self->c[j], AISLE_ARM_DEGREE, 0.0, 1.0, &lo, &hi);
+        if (lo < arm->min[j] || hi > arm->max[j]) { // only then it takes a closer look
+            aisle_poly_range(self->c[j], AISLE_ARM_DEGREE, &lo, &hi);
+        }
         const double by = aisle_max(0.0, arm->min[j] - lo) + aisle_max(0.0, hi - arm->max[j]);
         if (by > JOINT_SLACK) {
             sum += by;
