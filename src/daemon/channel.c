@@ -21,8 +21,10 @@ static const row rows[AISLE_CHANNEL_COUNT] = {
     [AISLE_CHANNEL_QUERY] = {"QUERY", AISLE_MSG_QUERY, false},
     [AISLE_CHANNEL_OBSTACLES] = {"OBSTACLES", AISLE_MSG_OBSTACLES, true},
     [AISLE_CHANNEL_COMMAND] = {"COMMAND", AISLE_MSG_COMMAND, false},
+    [AISLE_CHANNEL_ARM_GOAL] = {"ARM_GOAL", AISLE_MSG_ARM_GOAL, false},
     [AISLE_CHANNEL_PATH] = {"PATH", AISLE_MSG_PATH, false},
     [AISLE_CHANNEL_REPLY] = {"REPLY", AISLE_MSG_PATH, false},
+    [AISLE_CHANNEL_ARM_PATH] = {"ARM_PATH", AISLE_MSG_ARM_PATH, false},
     [AISLE_CHANNEL_STATUS] = {"STATUS", AISLE_MSG_STATUS, false},
     [AISLE_CHANNEL_DIAG] = {"DIAG", AISLE_MSG_DIAG, false},
 };
@@ -38,6 +40,13 @@ const char *aisle_channel_suffix(aisle_channel channel) {
 
 aisle_msg_type aisle_channel_type(aisle_channel channel) {
     return row_of(channel)->type;
+}
+
+aisle_channel aisle_channel_of_event(aisle_event_kind kind) {
+    if (kind == AISLE_EVENT_ARM_PATH) {
+        return AISLE_CHANNEL_ARM_PATH;
+    }
+    return kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY;
 }
 
 bool aisle_channel_is_snapshot(aisle_channel channel) {

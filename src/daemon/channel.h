@@ -20,8 +20,10 @@ typedef enum aisle_channel {
     AISLE_CHANNEL_QUERY = AISLE_INPUT_QUERY,
     AISLE_CHANNEL_OBSTACLES = AISLE_INPUT_OBSTACLES,
     AISLE_CHANNEL_COMMAND = AISLE_INPUT_COMMAND,
+    AISLE_CHANNEL_ARM_GOAL = AISLE_INPUT_ARM_GOAL,
     AISLE_CHANNEL_PATH,
     AISLE_CHANNEL_REPLY,
+    AISLE_CHANNEL_ARM_PATH,
     AISLE_CHANNEL_STATUS,
     AISLE_CHANNEL_DIAG,
     AISLE_CHANNEL_COUNT
@@ -33,6 +35,9 @@ typedef enum aisle_channel {
 // "QUERY"; of the message on it.
 const char *aisle_channel_suffix(aisle_channel channel);
 aisle_msg_type aisle_channel_type(aisle_channel channel);
+
+// Where an event of this kind goes.
+aisle_channel aisle_channel_of_event(aisle_event_kind kind);
 
 // True for the channels on which only the newest message counts (pose, vehicle, obstacles of one source).
 bool aisle_channel_is_snapshot(aisle_channel channel);

@@ -37,6 +37,9 @@ static aisle_input input_of(const aisle_feed *self) {
     case AISLE_INPUT_OBSTACLES:
         input.as.obstacles = &self->message.obstacles;
         break;
+    case AISLE_INPUT_ARM_GOAL:
+        input.as.arm_goal = &self->message.arm_goal;
+        break;
     case AISLE_INPUT_COMMAND:
     default:
         input.as.command = &self->message.command;

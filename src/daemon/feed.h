@@ -26,6 +26,7 @@ typedef struct aisle_feed {
         aisle_query_msg query;
         aisle_obstacles_msg obstacles;
         aisle_command_msg command;
+        aisle_arm_goal_msg arm_goal;
     } message;
 } aisle_feed;
 

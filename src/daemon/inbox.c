@@ -87,7 +87,7 @@ static int oldest_slot(const aisle_inbox *self, int first) {
 
 // Moves the snapshots an ordered message may rest on in front of it. A lost one is like one lost on the bus.
 static void pin_snapshots(aisle_inbox *self, aisle_channel channel) {
-    if (channel != AISLE_CHANNEL_GOALS) {
+    if (channel != AISLE_CHANNEL_GOALS && channel != AISLE_CHANNEL_ARM_GOAL) {
         aisle_inbox_slot *vehicle = &self->slots[AISLE_INBOX_SLOT_VEHICLE];
         if (vehicle->order != 0) {
             (void)push(self, AISLE_CHANNEL_VEHICLE, vehicle->bytes, vehicle->size);

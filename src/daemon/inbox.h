@@ -1,12 +1,12 @@
 // inbox.h - received messages until the planner takes them, in fixed memory. Level 5; knows no LCM.
 //
-// Two kinds of channels. Ordered ones (layout, patch, grid, goals, query, command) go into a ring of bytes and come out
+// Two kinds of channels. Ordered ones (layout, patch, grid, goals, query, command, arm goal) go into a ring of bytes and come out
 // as they went in; when the ring is full the message is refused and counted. Snapshots (vehicle, pose, obstacles of a
 // source) have one slot each, in which a newer one replaces an older one.
 //
 // Order: what comes out is what went in, but for replaced snapshots and what may overtake. A snapshot that an ordered
-// message behind it rests on is no longer replaced: it moves into the ring, in front of that message. Goals rest on all
-// of them, the others on the vehicle alone. Commands concern goals alone, so they overtake everything else. So the
+// message behind it rests on is no longer replaced: it moves into the ring, in front of that message. Goals, the arm's too, rest on
+// all of them, the others on the vehicle alone. Commands concern goals alone, so they overtake everything else. So the
 // answers are those of a planner that saw every message in the order of arrival, and a log of the bus can be replayed.
 //
 // Memory: the struct (about 450 kB of slots) and the caller's ring. Time: put and take O(size of the message).

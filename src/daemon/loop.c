@@ -121,10 +121,14 @@ static float planning_time(aisle_loop *self, const aisle_event *event) {
 static void send_events(aisle_loop *self, int64_t utime) {
     aisle_event event;
     while (aisle_planner_next_event(self->parts.planner, &event)) {
-        AISLE_ASSERT(event.size <= sizeof self->out && event.size > aisle_path_offset("num_waypoints"));
+        const aisle_channel channel = aisle_channel_of_event(event.kind);
+        AISLE_ASSERT(event.size <= sizeof self->out);
         memcpy(self->out, event.bytes, event.size);
-        aisle_path_put_float(self->out, "planning_time", planning_time(self, &event));
-        const aisle_channel channel = event.kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY;
+        const float seconds = planning_time(self, &event);
+        if (aisle_channel_type(channel) == AISLE_MSG_PATH) {
+            AISLE_ASSERT(event.size > aisle_path_offset("num_waypoints"));
+            aisle_path_put_float(self->out, "planning_time", seconds);
+        }
         publish(self, channel, self->out, event.size);
         aisle_record_message(self->parts.record, utime, channel, self->out, event.size);
         self->progress = true;

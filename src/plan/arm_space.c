@@ -6,7 +6,7 @@
 #define HALVINGS 6U
 #define GOAL_BIAS 0.05
 
-static void draw(void *context, aisle_rng *rng, double *q) {
+static void draw_anywhere(void *context, aisle_rng *rng, double *q) {
     const aisle_cspace *space = &((const aisle_arm_space *)context)->cspace;
     for (uint32_t d = 0; d < space->dim; d++) {
         q[d] = space->lo[d] + (space->hi[d] - space->lo[d]) * (double)aisle_rng_float(rng);
@@ -31,7 +31,7 @@ void aisle_arm_space_begin(aisle_arm_space *self, const aisle_arm_world *world) 
     const aisle_arm *arm = world->arm;
     *self = (aisle_arm_space){.world = world};
     self->cspace = (aisle_cspace){
-        .dim = arm->links, .context = self, .sample = draw, .steer = go_straight, .is_free = is_straight_free};
+        .dim = arm->links, .context = self, .sample = draw_anywhere, .steer = go_straight, .is_free = is_straight_free};
     for (uint32_t d = 0; d < arm->links; d++) {
         self->cspace.lo[d] = arm->min[d];
         self->cspace.hi[d] = arm->max[d];

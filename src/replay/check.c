@@ -1,5 +1,7 @@
 #include "replay/check.h"
 
+#include "base/check.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +49,30 @@ static const char *const path_fields[] = {
 };
 enum { PATH_FIELDS = sizeof path_fields / sizeof path_fields[0] };
 
+static const char *const arm_fields[] = {
+    "utime",        "boot_id",          "path_revision", "arm_goal_id",       "map_id",
+    "map_revision", "vehicle_revision", "t0_utime",      "valid_until_utime", "status",
+    "cause",        "cause_id",         "planner",       "work_units",        "clearance_min",
+    "duration",     "travel",           "num_waypoints",
+};
+enum { ARM_FIELDS = sizeof arm_fields / sizeof arm_fields[0] };
+
+bool aisle_check_covers(aisle_channel channel) {
+    return channel == AISLE_CHANNEL_PATH || channel == AISLE_CHANNEL_REPLY || channel == AISLE_CHANNEL_ARM_PATH;
+}
+
+static size_t offset_of(aisle_channel channel, const char *field) {
+    size_t offset = 0;
+    const bool is_known = aisle_msg_field_offset(aisle_channel_type(channel), field, &offset);
+    AISLE_ASSERT(is_known);
+    return offset;
+}
+
+static int32_t int32_of(aisle_channel channel, const uint8_t *bytes, const char *field) {
+    const uint8_t *at = bytes + offset_of(channel, field);
+    return (int32_t)((uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | (uint32_t)at[3]);
+}
+
 void aisle_check_init(aisle_check *self, FILE *report) {
     memset(self, 0, sizeof *self);
     self->report = report;
@@ -71,8 +97,8 @@ bool aisle_check_made(aisle_check *self, aisle_channel channel, const uint8_t *b
     return true;
 }
 
-static bool same_field(const uint8_t *a, const uint8_t *b, const char *field) {
-    return aisle_path_int32(a, field) == aisle_path_int32(b, field);
+static bool same_field(aisle_channel channel, const uint8_t *a, const uint8_t *b, const char *field) {
+    return int32_of(channel, a, field) == int32_of(channel, b, field);
 }
 
 static bool are_partners(const aisle_check_waiting *item, aisle_channel channel, const uint8_t *bytes) {
@@ -80,10 +106,15 @@ static bool are_partners(const aisle_check_waiting *item, aisle_channel channel,
         return false;
     }
     if (channel == AISLE_CHANNEL_REPLY) {
-        return same_field(item->bytes, bytes, "query_id");
+        return same_field(channel, item->bytes, bytes, "query_id");
     }
-    return same_field(item->bytes, bytes, "goal_list_id") && same_field(item->bytes, bytes, "goal_list_revision") &&
-           same_field(item->bytes, bytes, "path_revision");
+    if (channel == AISLE_CHANNEL_ARM_PATH) {
+        return same_field(channel, item->bytes, bytes, "arm_goal_id") &&
+               same_field(channel, item->bytes, bytes, "path_revision");
+    }
+    return same_field(channel, item->bytes, bytes, "goal_list_id") &&
+           same_field(channel, item->bytes, bytes, "goal_list_revision") &&
+           same_field(channel, item->bytes, bytes, "path_revision");
 }
 
 static aisle_check_waiting *take_partner(aisle_check *self, aisle_channel channel, const uint8_t *bytes) {
@@ -103,19 +134,24 @@ static aisle_check_waiting *take_partner(aisle_check *self, aisle_channel channe
     return NULL;
 }
 
-static void take_over_clock(uint8_t *to, const uint8_t *from) {
+static void take_over_clock(aisle_channel channel, uint8_t *to, const uint8_t *from) {
     static const char *const fields[] = {"utime", "boot_id", "t0_utime", "valid_until_utime"};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
-        size_t at = aisle_path_offset(fields[i]);
+        const size_t at = offset_of(channel, fields[i]);
         memcpy(to + at, from + at, sizeof(int64_t));
     }
-    size_t at = aisle_path_offset("planning_time");
-    memcpy(to + at, from + at, sizeof(float));
+    if (channel != AISLE_CHANNEL_ARM_PATH) {
+        const size_t at = offset_of(channel, "planning_time");
+        memcpy(to + at, from + at, sizeof(float));
+    }
 }
 
 static void tell(const aisle_check *self, aisle_channel channel, const uint8_t *path, const char *what) {
     if (channel == AISLE_CHANNEL_REPLY) {
         (void)fprintf(self->report, "REPLY query %" PRId32 ": %s\n", aisle_path_int32(path, "query_id"), what);
+    } else if (channel == AISLE_CHANNEL_ARM_PATH) {
+        (void)fprintf(self->report, "ARM_PATH goal %" PRId32 " revision %" PRId32 ": %s\n",
+                      int32_of(channel, path, "arm_goal_id"), int32_of(channel, path, "path_revision"), what);
     } else {
         (void)fprintf(self->report, "PATH goals %" PRId32 ".%" PRId32 " revision %" PRId32 ": %s\n",
                       aisle_path_int32(path, "goal_list_id"), aisle_path_int32(path, "goal_list_revision"),
@@ -130,13 +166,16 @@ static void tell_difference(const aisle_check *self, const aisle_check_waiting *
     while (at < both && made->bytes[at] == bytes[at]) {
         at++;
     }
+    const bool is_arm = made->channel == AISLE_CHANNEL_ARM_PATH;
+    const char *const *fields = is_arm ? arm_fields : path_fields;
     const char *field = "fingerprint";
-    size_t waypoints = aisle_path_offset("num_waypoints") + sizeof(int16_t);
-    for (int i = 0; i < PATH_FIELDS; i++) {
-        field = aisle_path_offset(path_fields[i]) <= at ? path_fields[i] : field;
+    const size_t waypoints = offset_of(made->channel, "num_waypoints") + sizeof(int16_t);
+    for (int i = 0; i < (is_arm ? (int)ARM_FIELDS : (int)PATH_FIELDS); i++) {
+        field = offset_of(made->channel, fields[i]) <= at ? fields[i] : field;
     }
     char what[160];
-    size_t each = aisle_msg_max_size(AISLE_MSG_WAYPOINT) - AISLE_MSG_FINGERPRINT_SIZE;
+    const size_t each =
+        aisle_msg_max_size(is_arm ? AISLE_MSG_ARM_WAYPOINT : AISLE_MSG_WAYPOINT) - AISLE_MSG_FINGERPRINT_SIZE;
     if (at < waypoints) {
         (void)snprintf(what, sizeof what, "differs in %s (byte %zu)", field, at);
     } else {
@@ -146,9 +185,11 @@ static void tell_difference(const aisle_check *self, const aisle_check_waiting *
 }
 
 void aisle_check_recorded(aisle_check *self, aisle_channel channel, const uint8_t *bytes, size_t size) {
-    if (aisle_msg_check(AISLE_MSG_PATH, bytes, size, NULL) != AISLE_OK) {
+    const aisle_msg_type type = aisle_channel_type(channel);
+    if (aisle_msg_check(type, bytes, size, NULL) != AISLE_OK) {
         self->different++;
-        (void)fprintf(self->report, "%s: the record is not a path_t\n", aisle_channel_suffix(channel));
+        (void)fprintf(self->report, "%s: the record is not a %s\n", aisle_channel_suffix(channel),
+                      aisle_msg_name(type));
         return;
     }
     if (channel == AISLE_CHANNEL_PATH && aisle_path_is_renewal(&self->seen, bytes)) {
@@ -160,7 +201,7 @@ void aisle_check_recorded(aisle_check *self, aisle_channel channel, const uint8_
         tell(self, channel, bytes, "recorded, but not made again");
         return;
     }
-    take_over_clock(made->bytes, bytes);
+    take_over_clock(channel, made->bytes, bytes);
     if (made->size == size && memcmp(made->bytes, bytes, size) == 0) {
         self->equal++;
     } else {

@@ -1,7 +1,7 @@
 // check.h - outputs of a replay against those recorded in the log, byte for byte. Level 5.
 //
 // A replayed output waits for its record, which stands later in the log. Partners are found by what they answer:
-// query_id for replies; goal_list_id, goal_list_revision and path_revision for paths. The fields that depend on the
+// query_id for replies; goal_list_id, goal_list_revision and path_revision for paths; arm_goal_id and path_revision for the arm's. The fields that depend on the
 // recording host's clock (utime, boot_id, t0_utime, valid_until_utime, planning_time) are taken over from the record
 // before comparing. Renewals of a lease are left out on both sides.
 //
@@ -29,7 +29,10 @@ void aisle_check_init(aisle_check *self, FILE *report);
 // One output of the replay. False: no memory.
 bool aisle_check_made(aisle_check *self, aisle_channel channel, const uint8_t *bytes, size_t size);
 
-// One message recorded on PATH or REPLY.
+// Is what is recorded on this channel compared? PATH, REPLY and ARM_PATH.
+bool aisle_check_covers(aisle_channel channel);
+
+// One message recorded on such a channel.
 void aisle_check_recorded(aisle_check *self, aisle_channel channel, const uint8_t *bytes, size_t size);
 
 // Counts what is left as extra and frees it. True: all equal, nothing missing or extra, and at least one compared.

@@ -119,7 +119,7 @@ static void handle(const aisle_log_event *event) {
     }
     if ((int)channel >= AISLE_CHANNEL_INPUTS) { // recorded: what the planner did by itself until then is due as well
         aisle_replay_advance(&tool.replay, event->utime);
-        if (tool.given.check && (channel == AISLE_CHANNEL_PATH || channel == AISLE_CHANNEL_REPLY)) {
+        if (tool.given.check && aisle_check_covers(channel)) {
             aisle_check_recorded(&tool.check, channel, event->bytes, event->size);
         }
         return;

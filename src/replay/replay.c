@@ -19,7 +19,7 @@ static void pull(aisle_replay *self) {
     aisle_event event;
     while (aisle_planner_next_event(self->planner, &event)) {
         bool path = event.kind == AISLE_EVENT_PATH;
-        aisle_replay_output output = {.channel = path ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY,
+        aisle_replay_output output = {.channel = aisle_channel_of_event(event.kind),
                                       .utime = self->now,
                                       .renewal = path && aisle_path_is_renewal(&self->seen, event.bytes),
                                       .bytes = event.bytes,

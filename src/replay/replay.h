@@ -17,7 +17,7 @@
 
 // One output of the planner, pulled while an input is being worked on. Valid during the call.
 typedef struct aisle_replay_output {
-    aisle_channel channel; // PATH or REPLY
+    aisle_channel channel; // PATH, REPLY or ARM_PATH
     int64_t utime;         // log time
     bool renewal;          // the last path again, its lease renewed
     const uint8_t *bytes;

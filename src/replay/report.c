@@ -49,15 +49,47 @@ static void print_json(aisle_channel channel, const aisle_path_msg *path, bool f
                   path->work_units, path->num_waypoints, (uint32_t)path->certificate);
 }
 
+static void report_arm(const aisle_replay_output *output, bool first, aisle_replay_sums *sums, FILE *text, FILE *json) {
+    static aisle_arm_path_msg path; // large; the tool has one thread
+    const aisle_status status = aisle_msg_decode(AISLE_MSG_ARM_PATH, output->bytes, output->size, &path, NULL);
+    AISLE_ASSERT(status == AISLE_OK); // the planner's own bytes
+    const char *cause = path.cause == 0 ? "-" : aisle_cause_name(path.cause);
+    sums->arms++;
+    sums->arms_proved += path.status != AISLE_PATH_NONE ? 1 : 0;
+    sums->work_units += path.work_units;
+    if (text != NULL) {
+        (void)fprintf(text,
+                      "arm   goal %-8" PRId32 " %-7s %-14s duration %7.3f travel %7.3f clearance %6.4f work %8" PRId32
+                      " waypoints %4d cause_id %" PRId32 "\n",
+                      path.arm_goal_id, aisle_report_path_status(path.status), cause, (double)path.duration,
+                      (double)path.travel, (double)path.clearance_min, path.work_units, path.num_waypoints,
+                      path.cause_id);
+    }
+    if (json != NULL) {
+        (void)fprintf(json,
+                      "%s\n    {\"channel\": \"arm_path\", \"arm_goal_id\": %" PRId32
+                      ", \"status\": \"%s\", \"cause\": %d, \"cause_id\": %" PRId32
+                      ", \"duration\": %.9g, \"travel\": %.9g, \"clearance_min\": %.9g, \"work_units\": %" PRId32
+                      ", \"waypoints\": %d}",
+                      first ? "" : ",", path.arm_goal_id, aisle_report_path_status(path.status), path.cause,
+                      path.cause_id, (double)path.duration, (double)path.travel, (double)path.clearance_min,
+                      path.work_units, path.num_waypoints);
+    }
+}
+
 void aisle_report_path(const aisle_replay_output *output, aisle_replay_sums *sums, FILE *text, FILE *json) {
     static aisle_path_msg path; // large; the tool has one thread
+    if (output->channel == AISLE_CHANNEL_ARM_PATH) {
+        report_arm(output, sums->replies + sums->paths + sums->arms == 0, sums, text, json);
+        return;
+    }
     aisle_status status = aisle_msg_decode(AISLE_MSG_PATH, output->bytes, output->size, &path, NULL);
     AISLE_ASSERT(status == AISLE_OK); // the planner's own bytes
     if (output->renewal) {
         sums->renewals++;
         return;
     }
-    bool first = sums->replies + sums->paths == 0, proved = path.status != AISLE_PATH_NONE;
+    bool first = sums->replies + sums->paths + sums->arms == 0, proved = path.status != AISLE_PATH_NONE;
     sums->replies += output->channel == AISLE_CHANNEL_REPLY ? 1 : 0;
     sums->paths += output->channel == AISLE_CHANNEL_PATH ? 1 : 0;
     sums->proved += proved ? 1 : 0;
@@ -86,11 +118,11 @@ void aisle_report_summary(const aisle_replay_summary *s, FILE *text) {
                   s->sums->replies, s->sums->paths, s->sums->renewals, s->sums->proved, s->sums->length,
                   s->sums->waypoints, s->sums->none);
     (void)fprintf(text,
-                  "work units %" PRId64 ", grid nodes %" PRId64 ", swarm evaluations %" PRId64
-                  ", verifier intervals %" PRId64 ", verifier refusals %" PRId64 "\n",
-                  counters[AISLE_COUNTER_WORK_UNITS], counters[AISLE_COUNTER_NODES],
-                  counters[AISLE_COUNTER_SWARM_EVALS], counters[AISLE_COUNTER_VERIFY_INTERVALS],
-                  counters[AISLE_COUNTER_VERIFY_FAILED]);
+                  "motions of the arm %" PRId64 ", proved %" PRId64 "; work units %" PRId64 ", grid nodes %" PRId64
+                  ", swarm evaluations %" PRId64 ", verifier intervals %" PRId64 ", verifier refusals %" PRId64 "\n",
+                  s->sums->arms, s->sums->arms_proved, counters[AISLE_COUNTER_WORK_UNITS],
+                  counters[AISLE_COUNTER_NODES], counters[AISLE_COUNTER_SWARM_EVALS],
+                  counters[AISLE_COUNTER_VERIFY_INTERVALS], counters[AISLE_COUNTER_VERIFY_FAILED]);
     (void)fprintf(text, "time %.3f s\n", s->seconds);
     if (s->check != NULL) {
         (void)fprintf(

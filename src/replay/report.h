@@ -12,13 +12,14 @@ typedef struct aisle_replay_sums {
     int64_t replies, paths, renewals; // outputs by channel; a renewal is not counted as a path
     int64_t proved, none;             // of replies and paths: with waypoints, and without
     int64_t work_units, waypoints;
-    double length; // m, of all proved ones
+    double length;             // m, of all proved ones
+    int64_t arms, arms_proved; // the arm's; not among the others
 } aisle_replay_sums;
 
 // "OK", "PARTIAL", "STOP", "NONE" or "?".
 const char *aisle_report_path_status(int8_t status);
 
-// Decodes the output and prints its line to text and, one JSON object with a comma in front unless first, to json (each
+// Decodes the output (of the arm, too) and prints its line to text and, one JSON object with a comma in front unless first, to json (each
 // may be NULL); adds to *sums. A renewal is counted only.
 void aisle_report_path(const aisle_replay_output *output, aisle_replay_sums *sums, FILE *text, FILE *json);
 

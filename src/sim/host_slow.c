@@ -15,7 +15,7 @@ bool aisle_sim_host_slice(aisle_sim_host *self, uint32_t units_per_ms, const cha
 static void pull(aisle_sim_host *self, int64_t utime) {
     aisle_event event;
     while (aisle_planner_next_event(self->engine.planner, &event)) {
-        aisle_channel channel = event.kind == AISLE_EVENT_PATH ? AISLE_CHANNEL_PATH : AISLE_CHANNEL_REPLY;
+        aisle_channel channel = aisle_channel_of_event(event.kind);
         if (channel == AISLE_CHANNEL_PATH) {
             aisle_histogram_add(&self->answers, self->spent_us);
             aisle_histogram_add(&self->answers_cpu, self->spent_us);

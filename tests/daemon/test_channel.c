@@ -18,10 +18,10 @@ static void test_every_name_is_found_again_and_only_with_its_prefix(void) {
     }
 }
 static void test_names_are_those_of_the_documents(void) {
-    static const char *const names[] = {"AISLE_LAYOUT",  "AISLE_LAYOUT_PATCH", "AISLE_GRID",  "AISLE_VEHICLE",
-                                        "AISLE_POSE",    "AISLE_GOALS",        "AISLE_QUERY", "AISLE_OBSTACLES",
-                                        "AISLE_COMMAND", "AISLE_PATH",         "AISLE_REPLY", "AISLE_STATUS",
-                                        "AISLE_DIAG"};
+    static const char *const names[] = {"AISLE_LAYOUT",   "AISLE_LAYOUT_PATCH", "AISLE_GRID",  "AISLE_VEHICLE",
+                                        "AISLE_POSE",     "AISLE_GOALS",        "AISLE_QUERY", "AISLE_OBSTACLES",
+                                        "AISLE_COMMAND",  "AISLE_ARM_GOAL",     "AISLE_PATH",  "AISLE_REPLY",
+                                        "AISLE_ARM_PATH", "AISLE_STATUS",       "AISLE_DIAG"};
     for (int i = 0; i < (int)AISLE_CHANNEL_COUNT; i++) {
         TEST_ASSERT_EQUAL(i, aisle_channel_find("AISLE", names[i], strlen(names[i])));
     }
@@ -35,6 +35,11 @@ static void test_each_channel_carries_its_type(void) {
     TEST_ASSERT_EQUAL(AISLE_MSG_GRID_CHUNK, aisle_channel_type(AISLE_CHANNEL_GRID));
     TEST_ASSERT_EQUAL(AISLE_MSG_PATH, aisle_channel_type(AISLE_CHANNEL_PATH));
     TEST_ASSERT_EQUAL(AISLE_MSG_PATH, aisle_channel_type(AISLE_CHANNEL_REPLY));
+    TEST_ASSERT_EQUAL(AISLE_MSG_ARM_GOAL, aisle_channel_type(AISLE_CHANNEL_ARM_GOAL));
+    TEST_ASSERT_EQUAL(AISLE_MSG_ARM_PATH, aisle_channel_type(AISLE_CHANNEL_ARM_PATH));
+    TEST_ASSERT_EQUAL(AISLE_CHANNEL_PATH, aisle_channel_of_event(AISLE_EVENT_PATH));
+    TEST_ASSERT_EQUAL(AISLE_CHANNEL_REPLY, aisle_channel_of_event(AISLE_EVENT_REPLY));
+    TEST_ASSERT_EQUAL(AISLE_CHANNEL_ARM_PATH, aisle_channel_of_event(AISLE_EVENT_ARM_PATH));
 }
 static void test_pose_vehicle_and_obstacles_alone_are_snapshots(void) {
     for (int i = 0; i < (int)AISLE_CHANNEL_COUNT; i++) {

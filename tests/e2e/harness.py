@@ -17,7 +17,7 @@ DATA = Path(__file__).resolve().parent.parent / "data"
 AISLED = os.environ.get("AISLED", "")
 AISLE_REPLAY = os.environ.get("AISLE_REPLAY", "")
 PATIENCE = 30.0  # s, for things that take milliseconds; sanitizers and busy machines are slow
-CHANNELS = ["LAYOUT", "LAYOUT_PATCH", "GRID", "VEHICLE", "POSE", "GOALS", "QUERY", "OBSTACLES", "COMMAND"]  # numbered from 0
+CHANNELS = ["LAYOUT", "LAYOUT_PATCH", "GRID", "VEHICLE", "POSE", "GOALS", "QUERY", "OBSTACLES", "COMMAND", "ARM_GOAL"]  # numbered from 0
 
 
 def alone_on_loopback() -> bool:
