@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-#define GENERATIONS 40U
-#define STALL 150U         // evaluations without a better one
+#define GENERATIONS 25U
+#define STALL 100U         // evaluations without a better one
 #define BEND_MIDDLE 128.0F // b0: 2 rad
 #define BEND_SKEW 512.0F   // b1: 0.95 rad
 #define SPREAD 0.5F

@@ -16,6 +16,7 @@ COMMANDS = {
     "map": ("maps", "send a ROS map_server map or a scenario"),
     "vehicle": ("vehicles", "send the vehicle's footprint and limits"),
     "query": ("query", "ask for paths, one row each"),
+    "arm": ("arm", "ask for a motion of the arm, with a picture if wished"),
     "goal": ("goals", "send a goal list, with a simulated pose if wished"),
     "watch": ("watch", "live view of the daemon"),
     "sim": ("sim", "a simulated vehicle among simulated movers"),

@@ -21,6 +21,8 @@ CAUSES = {getattr(status_t, name): name for name in dir(status_t) if name.isuppe
 HINTS = {
     status_t.NO_LAYOUT: "send one with 'aisle map'",
     status_t.NO_VEHICLE: "send one with 'aisle vehicle' or put it into aisled's settings",
+    status_t.NO_ARM: "give the vehicle one: link_length and arm_base, see vehicle_t",
+    status_t.VEHICLE_MOVES: "the arm moves while the vehicle rests only",
     status_t.NO_POSE: "publish one with 'aisle goal --pose X,Y,TH'",
     status_t.MAP_MISMATCH: "the map_id of the request is not the map held; see --map-id",
     status_t.OUTDATED: "an equal or newer revision is held; see --map-revision",

@@ -39,7 +39,11 @@ DEFAULTS = {
 }
 DEFAULT_FOOTPRINT = ((-0.5, -0.35), (0.5, -0.35), (0.5, 0.35), (-0.5, 0.35))
 NUMBERS = (*DEFAULTS, "footprint_radius", "curvature_max")
-KEYS = (*NUMBERS, "drive", "footprint", "vehicle_revision")
+ARM_LISTS = (  # one number a link
+    *("link_length", "link_radius", "link_mass", "joint_min", "joint_max"),
+    *("joint_v_max", "joint_a_max", "joint_j_max", "joint_torque_max"),
+)
+KEYS = (*NUMBERS, "drive", "footprint", "vehicle_revision", "arm_base", *ARM_LISTS)
 ALIASES = {"radius": "footprint_radius"}
 
 
@@ -89,10 +93,31 @@ def make(values: dict, where: str = "vehicle") -> vehicle_t:
         elif key == "footprint":
             msg.footprint = check_footprint(value, where)
             msg.num_vertices = len(msg.footprint)
+        elif key == "arm_base" or key in ARM_LISTS:
+            setattr(msg, key, _arm_list(where, key, value))
         else:
             setattr(msg, key, _number(where, raw, value))
     msg.vehicle_revision = int(msg.vehicle_revision)
+    _fill_arm(msg, where)
     return msg
+
+
+def _arm_list(where: str, key: str, value: object) -> list[float]:
+    most = 3 if key == "arm_base" else vehicle_t.MAX_LINKS
+    ok = isinstance(value, list) and 1 <= len(value) <= most and (key != "arm_base" or len(value) == most)
+    if not ok or not all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in value):
+        raise UserError(f"{where}: {key} must be {'3' if key == 'arm_base' else '1 to 3'} numbers, not {value}")
+    return [float(v) for v in value]
+
+
+def _fill_arm(msg: vehicle_t, where: str) -> None:
+    """As many links as link_length has; what is not given is 0, the default."""
+    msg.num_links = len(msg.link_length)
+    for key in ARM_LISTS:
+        given = getattr(msg, key)
+        if len(given) not in (0, msg.num_links):
+            raise UserError(f"{where}: {key} has {len(given)} numbers, link_length {msg.num_links}")
+        setattr(msg, key, list(given) or [0.0] * msg.num_links)
 
 
 def _number(where: str, key: str, value: object) -> float:
