@@ -17,7 +17,7 @@ uint32_t aisle_poly_derivative(const double *c, uint32_t degree, double *out);
 
 // Places in [0, 1] where the polynomial changes its sign, rising, to roots[degree]; returns how many. Between the zeros of
 // the derivative it is monotone, so each sign change there is found by bisection: from the linear derivative upwards, no
-// start values, no failure. Each to within 1e-15; zeros without a change of sign are left out. O(d^2) bisections of 60
+// start values, no failure. Each to within 1e-15; a zero that is only touched may be told, too. O(d^2) bisections of 60
 // steps at most.
 uint32_t aisle_poly_roots(const double *c, uint32_t degree, double *roots);
 

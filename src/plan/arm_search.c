@@ -5,8 +5,9 @@
 
 #include <string.h>
 
-#define GENERATIONS 25U
-#define STALL 100U         // evaluations without a better one
+#define GENERATIONS 25U    // of a try
+#define TRIES 8U           // of a search asked for by name; others come after one
+#define STALL 100U         // candidates without a better one, once one was free
 #define BEND_MIDDLE 128.0F // b0: 2 rad
 #define BEND_SKEW 512.0F   // b1: 0.95 rad
 #define SPREAD 0.5F
@@ -145,13 +146,12 @@ static aisle_cost_pair cost(void *context, const float *x) {
 
 // ---- the run
 
-static void start_ga(aisle_arm_search *self, uint16_t genes, uint64_t seed) {
+static void start_ga(aisle_arm_search *self, uint16_t genes, uint64_t seed, bool is_again) {
     aisle_ga_config cfg = aisle_ga_modern(genes, GENERATIONS);
     cfg.population = AISLE_ARM_POPULATION;
-    cfg.seeds = self->guess;
-    cfg.seed_count = 1U;
+    cfg.seeds = is_again ? NULL : self->guess;
+    cfg.seed_count = (uint16_t)(is_again ? 0 : 1);
     cfg.spread = SPREAD;
-    cfg.stall_max = STALL;
     if (self->paper) {
         cfg = (aisle_ga_config){.coding = AISLE_GA_REAL,
                                 .crossover = AISLE_GA_BLEND,
@@ -175,23 +175,33 @@ static void start_ga(aisle_arm_search *self, uint16_t genes, uint64_t seed) {
     AISLE_ASSERT(st == AISLE_OK);
 }
 
-static void start_pso(aisle_arm_search *self, uint16_t genes, uint64_t seed) {
+static void start_pso(aisle_arm_search *self, uint16_t genes, uint64_t seed, bool is_again) {
     self->pso_config = (aisle_pso_config){.cost = cost,
                                           .cost_ctx = self,
                                           .lo = self->lo,
                                           .hi = self->hi,
-                                          .guess = self->guess,
+                                          .guess = is_again ? NULL : self->guess,
                                           .spread = SPREAD,
                                           .inertia = AISLE_PSO_CONSTRICTION,
                                           .seed = seed,
                                           .eval_max = AISLE_ARM_POPULATION * (GENERATIONS + 1U),
-                                          .stall_max = STALL,
                                           .value_goal = -INFINITY,
                                           .dim = genes,
                                           .particles = AISLE_ARM_POPULATION};
     const aisle_status st = aisle_pso_start(&self->pso, &self->pso_config, self->pso_work,
                                             AISLE_PSO_WORK_LEN(AISLE_ARM_GENES, AISLE_ARM_POPULATION));
     AISLE_ASSERT(st == AISLE_OK);
+}
+
+// A try anew forgets the motion without a bend and looks everywhere.
+static void begin_try(aisle_arm_search *self, bool is_again) {
+    const uint16_t genes = (uint16_t)(2U * self->world->arm->links);
+    self->tries--;
+    if (self->swarm) {
+        start_pso(self, genes, self->seed++, is_again);
+    } else {
+        start_ga(self, genes, self->seed++, is_again);
+    }
 }
 
 void aisle_arm_search_start(aisle_arm_search *self, const aisle_arm_world *world, const double *from, const double *to,
@@ -206,27 +216,36 @@ void aisle_arm_search_start(aisle_arm_search *self, const aisle_arm_world *world
     self->paper = options->objective == AISLE_OPTIONS_PAPER;
     self->swarm = options->planner == AISLE_OPTIONS_PSO && !self->paper;
     self->risk_weight = options->risk_weight > 0.0F ? (double)options->risk_weight : 1.0;
+    const bool is_named = options->planner == AISLE_OPTIONS_GA || options->planner == AISLE_OPTIONS_PSO;
+    self->tries = is_named && !self->paper ? TRIES : 1U;
+    self->seed = seed;
     self->units = self->evals = self->first = 0;
     for (uint32_t g = 0; g < 2U * links; g++) {
         self->hi[g] = self->paper ? PAPER_RANGE : g % 2U == 0U ? BEND_MIDDLE : BEND_SKEW;
         self->lo[g] = -self->hi[g];
         self->guess[g] = 0.0F;
     }
-    if (self->swarm) {
-        start_pso(self, (uint16_t)(2U * links), seed);
-    } else {
-        start_ga(self, (uint16_t)(2U * links), seed);
-    }
+    begin_try(self, false);
+}
+
+// Ours but for PAPER, which has its generations.
+static bool has_stalled(const aisle_arm_search *self) {
+    const uint32_t last = self->swarm ? self->pso.last_improvement : self->ga.last_improvement;
+    return !self->paper && self->first > 0U && (self->swarm ? self->pso.evals : self->ga.evals) - last >= STALL;
 }
 
 aisle_status aisle_arm_search_step(aisle_arm_search *self, uint32_t units, uint32_t *spent) {
     aisle_status st = AISLE_BUSY;
     self->units = 0;
-    while (st == AISLE_BUSY && self->units < units) {
+    while (st == AISLE_BUSY && self->units < units && !has_stalled(self)) {
         st = self->swarm ? aisle_pso_step(&self->pso, 1U) : aisle_ga_step(&self->ga, 1U);
     }
     *spent += self->units;
-    if (st == AISLE_BUSY) {
+    if (st != AISLE_BUSY && self->first == 0U && self->tries > 0U) {
+        begin_try(self, true);
+        return AISLE_BUSY;
+    }
+    if (st == AISLE_BUSY && !has_stalled(self)) {
         return AISLE_BUSY;
     }
     return self->first > 0U ? AISLE_OK : AISLE_PARTIAL;

@@ -6,8 +6,10 @@
 //     value      by objective: SHORTEST the joint angle travelled (rad, Simpson's rule, the paper's F1); SAFEST that times
 //                1 + risk_weight * mean of max(1 - gap / AISLE_ARM_CREEP, 0); FASTEST the least duration (s); LEAST_ENERGY the
 //                motors' work at the least duration, the integral of |torque * rate| (J)
-// GA (algo/ga.h) with a population of 24, PSO (algo/pso.h) with 24 particles; both start at the motion without a bend, so what comes
-// out is never worse. PAPER is the paper's own search (Machmudah et al. 2012): 20 points, 100 generations, selection 0.5, mutation
+// GA (algo/ga.h) with a population of 24, PSO (algo/pso.h) with 24 particles: tries of 25 generations, one, or up to eight if asked for
+// by name, until a motion is free and 100 more candidates have brought no better one. The first try starts at the motion without a
+// bend, so what comes out is never worse; later ones look everywhere.
+// PAPER is the paper's own search (Machmudah et al. 2012): 20 points, 100 generations, selection 0.5, mutation
 // 0.3, its coefficients a6 and a7 in [-100, 100], value as SHORTEST, and the death penalty: whoever collides is not allowed at
 // all, and until one that does not was seen each population is drawn anew. The proof of the whole motion is ours there, too.
 // Memory: the caller's arena, a few KiB. Time: AISLE_ARM_SAMPLES configurations a candidate, and of one that is free there those
@@ -37,6 +39,8 @@ typedef struct aisle_arm_search {
     double risk_weight;
     bool swarm;     // PSO, else GA
     bool paper;     // the paper's own
+    uint32_t tries; // left
+    uint64_t seed;  // of the next one
     uint32_t units; // of the step under way
     uint32_t evals; // candidates looked at since start
     uint32_t first; // of them, that was proved free; 0: none yet

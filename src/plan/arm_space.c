@@ -2,7 +2,7 @@
 
 #define STEP 0.5 // rad
 #define SAMPLES 200000U
-#define MORE 300U // of a star, after the first path
+#define MORE 150U // of a star, after the first path
 #define HALVINGS 6U
 #define GOAL_BIAS 0.05
 

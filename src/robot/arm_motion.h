@@ -34,7 +34,7 @@ void aisle_arm_piece_at(const aisle_arm_piece *self, double r, uint32_t order, d
 // Greatest |derivative| of this order of each joint over [0, 1]: out[links]. By roots, as poly.h says.
 void aisle_arm_piece_peaks(const aisle_arm_piece *self, uint32_t order, double *out);
 
-// The same, bounded from above by Bernstein coefficients (poly.h): at most twice as much, and a tenth of the work.
+// The same, bounded from above by Bernstein coefficients (poly.h): up to four times as much, for a tenth of the work.
 void aisle_arm_piece_bounds(const aisle_arm_piece *self, uint32_t order, double *out);
 
 // Joint angle travelled, rad, sum over joints: the integral of |q'| by Simpson's rule, as in the paper, on AISLE_ARM_SIMPSON
