@@ -524,7 +524,7 @@ static void test_the_configured_budget_holds_where_a_request_names_none(void) {
 
 static void test_unknown_options_are_told_as_malformed(void) {
     take_hall();
-    const aisle_options_msg bad[] = {{.planner = 50},      {.planner = AISLE_OPTIONS_PRM},
+    const aisle_options_msg bad[] = {{.planner = 50},      {.planner = AISLE_OPTIONS_ASTAR + 1},
                                      {.objective = 50},    {.objective = -1},
                                      {.interpolation = 2}, {.risk_weight = -1.0F},
                                      {.num_samples = -1},  {.work_units = -1},

@@ -230,6 +230,8 @@ COUNTERS = dict(
             "cache repaired",
             "roadmaps",
             "roadmap repairs",
+            "arm goals",
+            "arm paths",
         ]
     )
 )
