@@ -65,6 +65,8 @@ static int32_t id_of(const aisle_input *input) {
         return input->as.query->query_id;
     case AISLE_INPUT_OBSTACLES:
         return input->as.obstacles->seq;
+    case AISLE_INPUT_ARM_GOAL:
+        return input->as.arm_goal->arm_goal_id;
     case AISLE_INPUT_COMMAND:
     default:
         return input->as.command->command_id;

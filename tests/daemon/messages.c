@@ -40,6 +40,7 @@ const test_message *make_message(aisle_channel channel, int32_t id) {
         aisle_goal_list_msg goals;
         aisle_query_msg query;
         aisle_command_msg command;
+        aisle_arm_goal_msg arm_goal;
     } msg;
     memset(&msg, 0, sizeof msg);
     switch (channel) {
@@ -66,6 +67,9 @@ const test_message *make_message(aisle_channel channel, int32_t id) {
         break;
     case AISLE_CHANNEL_COMMAND:
         msg.command.command_id = id;
+        break;
+    case AISLE_CHANNEL_ARM_GOAL:
+        msg.arm_goal.arm_goal_id = id;
         break;
     default:
         return make_obstacles(0, id);

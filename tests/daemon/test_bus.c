@@ -154,14 +154,14 @@ static void on_output(const lcm_recv_buf_t *received, const char *channel, void 
     (void)snprintf(heard, sizeof heard, "%s=%.*s", channel, (int)received->data_size, (const char *)received->data);
 }
 static void test_outputs_are_published_on_their_channels(void) {
-    TEST_ASSERT_NOT_NULL(lcm_subscribe(bus.lcm, "T_(PATH|REPLY|STATUS|DIAG)", on_output, NULL));
-    static const char *const want[] = {"T_PATH=x", "T_REPLY=x", "T_STATUS=x", "T_DIAG=x"};
-    for (int i = 0; i < 4; i++) {
+    TEST_ASSERT_NOT_NULL(lcm_subscribe(bus.lcm, "T_(PATH|REPLY|ARM_PATH|STATUS|DIAG)", on_output, NULL));
+    static const char *const want[] = {"T_PATH=x", "T_REPLY=x", "T_ARM_PATH=x", "T_STATUS=x", "T_DIAG=x"};
+    for (int i = 0; i < 5; i++) {
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_bus_publish(&bus, (aisle_channel)(AISLE_CHANNEL_PATH + i), "x", 1));
         drain_all();
         TEST_ASSERT_EQUAL_STRING(want[i], heard);
     }
-    TEST_ASSERT_EQUAL_INT64(4, bus.published);
+    TEST_ASSERT_EQUAL_INT64(5, bus.published);
     TEST_ASSERT_EQUAL_INT64(0, bus.failed);
 }
 static void test_bus_that_does_not_exist_is_refused(void) {
