@@ -100,7 +100,7 @@ def draw(out: Path, folder: Path, outcomes: list[Outcome]) -> None:
         one = arms.arm_of(scenario.vehicle)
         arm.draw_strip(row[0], scenario, scenario.vehicle, one, scenario.pose, shown.example)
         arm.draw_curves(row[1:], one, arms.base_of(one, scenario.pose)[2], shown.example)
-        row[0].set_title(f"{case}, {shown.method}\n" + "; ".join(f"{o.escaped}/{o.seeds} {o.method}" for o in mine), fontsize=7)
+        row[0].set_title(f"{case}, {shown.method}\n" + "\n".join(f"{o.escaped}/{o.seeds} {o.method}" for o in mine), fontsize=7)
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=60)
     plt.close(figure)
