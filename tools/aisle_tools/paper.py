@@ -7,12 +7,12 @@ import importlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-PAPERS = {1: "paper1", 2: "paper2", 3: "paper3", 5: "paper5"}
+PAPERS = {1: "paper1", 2: "paper2", 3: "paper3", 4: "paper4", 5: "paper5"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     papers = "1: safety path by PSO in a factory store (2018); 2: local swarm among mobile obstacles (2013); "
-    papers += "3: arm by GA (2012); 5: genetic search through barriers (2010)"
+    papers += "3: arm by GA (2012); 4: sampling planners (2023); 5: genetic search through barriers (2010)"
     parser.add_argument("number", type=int, choices=sorted(PAPERS), help=papers)
     parser.add_argument("--programs", type=Path, default=ROOT / "build" / "release", metavar="DIR", help="of the build")
     parser.add_argument("--scenarios", type=Path, default=ROOT / "tests" / "data" / "scenarios", metavar="DIR")
