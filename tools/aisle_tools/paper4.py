@@ -404,7 +404,7 @@ def as_json(computed: dict, found: dict[str, list[dict]], named: dict[str, list[
 
 def draw(path: Path, made: list[Scene], runs: dict, asked: dict, found: dict[str, list[dict]]) -> None:
     """A row of trees and roadmaps a scene, below them times and energies."""
-    figure = plt.figure(figsize=(20.0, 13.5), layout="constrained")
+    figure = plt.figure(figsize=(20.0, 12.6), layout="constrained")
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.45, 1.0))
     grid = upper.subplots(len(made), len(PLANNERS), sharex=True, sharey=True)
     for axes, one in zip(grid, made):
