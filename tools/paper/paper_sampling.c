@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { BLOCK = 192 << 20, CELLS = 1 << 20, NODES = 65000, UNITS = 64 };
+enum { BLOCK = 48 << 20, CELLS = 1 << 17, NODES = 65000, UNITS = 64 };
 
 typedef struct settings {
     int planner;
