@@ -2,11 +2,14 @@
 //
 //     bench-sampling PLANNER STEP PLAIN FIRST_SEED SEEDS SAMPLES MS [TREE] < hall
 //
-// The hall as hall.h says; headings are left out (configurations are places). PLANNER: as options_t has it. STEP: m. PLAIN 0:
-// what the library makes of it; 1: the paper's form. SAMPLES: at most, 0: as the library. MS: a star goes on for so long (of process
-// time), 0: until its samples end. Per seed: ms and samples to the first path and its length, nodes, lengths at 1, 5, 20 and
-// 100 ms; null where there is none. TREE: lines "x y parent_x parent_y", then "path x y ...".
+// The hall as hall.h says; headings are left out (configurations are places). PLANNER: as options_t has it, RRT to PRM. STEP:
+// m. PLAIN 0: what the library makes of it; 1: the paper's form. SAMPLES: at most, 0: as the library. MS: a star goes on for so
+// long (of process time), 0: until its samples end. Per seed: ms and samples to the first path and its length, nodes, lengths
+// at 1, 5, 20 and 100 ms, the last path; null where there is none. TREE: lines "x y parent_x parent_y", then "path x y ...".
+// PRM: lazy, FIRST_DRAWS draws and twice as many whenever they do not join the ends or, with MS, as long as there is time;
+// STEP and PLAIN mean nothing to it.
 #include "aisle/messages.h"
+#include "algo/roadmap.h"
 #include "algo/rrt.h"
 #include "hall.h"
 #include "plan/vehicle_space.h"
@@ -15,7 +18,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { BLOCK = 160 << 20, CELLS = 1 << 22, NODES = 32768, UNITS = 64, MARKS = 4 };
+enum { BLOCK = 160 << 20, CELLS = 1 << 22, NODES = 32768, UNITS = 64, UNITS_FIRST = 16, MARKS = 4 };
+enum { FIRST_DRAWS = 32, LINKS = 10 };
 
 static const double marks[MARKS] = {1.0, 5.0, 20.0, 100.0}; // ms
 static hall scene;
@@ -23,6 +27,10 @@ static aisle_space space;
 static aisle_vehicle_space places;
 static aisle_rrt tree;
 static uint32_t path[NODES + 1];
+static aisle_roadmap roadmap;
+static aisle_roadmap_search search;
+static double way[2 * (NODES + 1)];
+static double cap; // ms, 0: none
 
 static double ms_now(void) {
     struct timespec t;
@@ -38,44 +46,107 @@ static void print_number(const char *name, double value) {
     }
 }
 
-static void run(const aisle_rrt_config *cfg, double most) {
-    double first = (double)INFINITY, at[MARKS];
-    uint32_t mark = 0, units = 0;
-    const double began = ms_now();
+typedef struct outcome {
+    double began, first, at[MARKS], best; // ms; ms since then; lengths
+    double first_length;
+    uint32_t mark, units;
+} outcome;
+
+static outcome begin(void) {
+    outcome o = {.first = (double)INFINITY, .best = (double)INFINITY, .first_length = (double)INFINITY};
+    o.began = ms_now();
+    return o;
+}
+
+// What is known by now; up to now it was o->best. ms since it began.
+static double note(outcome *o, double length) {
+    const double now = ms_now() - o->began;
+    for (; o->mark < MARKS && now > marks[o->mark]; o->mark++) {
+        o->at[o->mark] = o->best;
+    }
+    if (length < o->best && o->best > 1e300) {
+        o->first = now;
+        o->first_length = length;
+    }
+    o->best = length < o->best ? length : o->best;
+    return now;
+}
+
+static void print_length(double length, const char *before) {
+    if (length < (double)INFINITY) {
+        printf("%s%.6f", before, length);
+    } else {
+        printf("%snull", before);
+    }
+}
+
+static void print_outcome(outcome *o, uint64_t seed, uint32_t nodes, double samples, uint32_t way_count) {
+    const double all = ms_now() - o->began;
+    for (; o->mark < MARKS; o->mark++) {
+        o->at[o->mark] = o->best;
+    }
+    printf("{\"seed\": %llu, \"nodes\": %u, \"units\": %u", (unsigned long long)seed, nodes, o->units);
+    print_number("ms", all);
+    print_number("first_ms", o->first);
+    print_number("first_samples", samples);
+    print_number("first", o->first_length);
+    printf(", \"at\": [");
+    for (uint32_t mark = 0; mark < MARKS; mark++) {
+        print_length(o->at[mark], mark > 0U ? ", " : "");
+    }
+    printf("], \"path\": [");
+    for (uint32_t i = 0; i < way_count; i++) {
+        printf("%s[%.9f, %.9f]", i > 0U ? ", " : "", way[2U * i], way[2U * i + 1U]);
+    }
+    printf("]}");
+}
+
+static void grow_tree(const aisle_rrt_config *cfg) {
+    outcome o = begin();
     if (aisle_rrt_start(&tree, cfg) != AISLE_OK) {
         hall_fail("these numbers make no tree");
     }
     aisle_status st = AISLE_BUSY;
-    for (double now = 0.0; st == AISLE_BUSY && (most <= 0.0 || now < most || first > now);) {
-        const double before = aisle_rrt_cost(&tree);
-        st = aisle_rrt_step(&tree, UNITS, &units);
-        now = ms_now() - began;
-        first = before > 1e300 && aisle_rrt_cost(&tree) < 1e300 ? now : first;
-        for (; mark < MARKS && now > marks[mark]; mark++) {
-            at[mark] = before;
+    double now = note(&o, aisle_rrt_cost(&tree));
+    while (st == AISLE_BUSY && (cap <= 0.0 || now < cap || (o.first > now && now < 60.0 * cap))) {
+        st = aisle_rrt_step(&tree, o.first < now ? UNITS : UNITS_FIRST, &o.units);
+        now = note(&o, aisle_rrt_cost(&tree));
+    }
+    const uint32_t count = aisle_rrt_path(&tree, path, NODES + 1);
+    for (uint32_t i = 0; i < count; i++) {
+        way[2U * i] = aisle_rrt_at(&tree, path[i])[0];
+        way[2U * i + 1U] = aisle_rrt_at(&tree, path[i])[1];
+    }
+    const bool found = tree.first_sample != AISLE_RRT_NONE;
+    print_outcome(&o, cfg->seed, tree.near.count, found ? (double)tree.first_sample : (double)INFINITY, count);
+}
+
+// The shortest way through the roadmap as it is.
+static double ask(const aisle_rrt_config *cfg, uint32_t *units) {
+    aisle_roadmap_ask(&search, &roadmap, AISLE_ROADMAP_ASTAR, cfg->start, cfg->goal, units);
+    while (aisle_roadmap_search_step(&search, UNITS, units) == AISLE_BUSY) {
+    }
+    return aisle_roadmap_cost(&search);
+}
+
+static void grow_roadmap(const aisle_rrt_config *cfg) {
+    const aisle_roadmap_config draws = {.samples = FIRST_DRAWS, .seed = cfg->seed};
+    outcome o = begin();
+    uint32_t first_draws = 0, count = 0;
+    (void)aisle_roadmap_start(&roadmap, cfg->space, &draws);
+    for (double now = 0.0;;) {
+        while (aisle_roadmap_step(&roadmap, UNITS, &o.units) == AISLE_BUSY) {
         }
-        if (most > 0.0 && now > 60.0 * most) {
+        const double length = ask(cfg, &o.units);
+        count = length < o.best ? aisle_roadmap_way(&search, way, NODES + 1) : count;
+        now = note(&o, length);
+        first_draws = first_draws == 0U && o.best < 1e300 ? roadmap.count : first_draws;
+        if ((o.best < 1e300 && now >= cap) || (cap > 0.0 && now > 60.0 * cap) ||
+            aisle_roadmap_grow(&roadmap, 2U * roadmap.count) != AISLE_OK) {
             break;
         }
     }
-    const double all = ms_now() - began;
-    for (; mark < MARKS; mark++) {
-        at[mark] = aisle_rrt_cost(&tree);
-    }
-    printf("{\"seed\": %llu, \"nodes\": %u, \"units\": %u", (unsigned long long)cfg->seed, tree.near.count, units);
-    print_number("ms", all);
-    print_number("first_ms", first);
-    print_number("first_samples", tree.first_sample == AISLE_RRT_NONE ? (double)INFINITY : (double)tree.first_sample);
-    print_number("first", tree.first_cost);
-    printf(", \"at\": [");
-    for (mark = 0; mark < MARKS; mark++) {
-        if (at[mark] < (double)INFINITY) {
-            printf("%s%.6f", mark > 0U ? ", " : "", at[mark]);
-        } else {
-            printf("%snull", mark > 0U ? ", " : "");
-        }
-    }
-    printf("]}");
+    print_outcome(&o, cfg->seed, roadmap.free_count, first_draws > 0U ? (double)first_draws : (double)INFINITY, count);
 }
 
 static void write_tree(const char *name) {
@@ -109,7 +180,9 @@ int main(int argc, char **argv) {
     aisle_space_carve(&space, &arena, CELLS);
     aisle_space_begin(&space, &scene.layout, &scene.vehicle, AISLE_SPACE_FREE_TURN);
     aisle_rrt_carve(&tree, &arena, NODES, 2U);
-    if (arena.overflow || planner < AISLE_OPTIONS_RRT || planner > AISLE_OPTIONS_RRT_STAR_ADAPTIVE) {
+    aisle_roadmap_carve(&roadmap, &arena, 2U, NODES, LINKS);
+    aisle_roadmap_search_carve(&search, &arena, NODES);
+    if (arena.overflow || planner < AISLE_OPTIONS_RRT || planner > AISLE_OPTIONS_PRM) {
         hall_fail("no such planner");
     }
     aisle_vehicle_space_begin(&places, &space, AISLE_VEHICLE_SPACE_PLACE);
@@ -123,13 +196,18 @@ int main(int argc, char **argv) {
     if (atol(argv[6]) > 0) {
         cfg.samples = (uint32_t)atol(argv[6]);
     }
-    cfg.more = atof(argv[7]) > 0.0 ? UINT32_MAX : cfg.more;
+    cap = atof(argv[7]);
+    cfg.more = cap > 0.0 ? UINT32_MAX : cfg.more;
     printf("[");
     for (long i = 0; i < seeds; i++) {
         cfg.seed = (uint64_t)(first_seed + i);
         printf(i > 0 ? ",\n" : "");
-        run(&cfg, atof(argv[7]));
-        if (i == 0 && argc == 9) {
+        if (planner == AISLE_OPTIONS_PRM) {
+            grow_roadmap(&cfg);
+        } else {
+            grow_tree(&cfg);
+        }
+        if (i == 0 && argc == 9 && planner != AISLE_OPTIONS_PRM) {
             write_tree(argv[8]);
         }
     }
