@@ -4,6 +4,7 @@
 // after how much, and it is kept in [lo, lo + period). Contract of the functions; none may be NULL but as said:
 //     sample    uniform in the bounds, not necessarily free
 //     sample_between  uniform among those of them with bound(a, q) + bound(q, b) <= most. NULL: sample() until one is so
+//     retract   moves a q that is not free to one near it that may be; a free one stays. NULL: all stay
 //     distance  a metric: what is near. NULL: the weighted Euclidean one below, which is then exact
 //     cost      of the motion from a to b, at least bound(); what an optimum is measured by. NULL: the distance
 //     bound     no motion from a to b costs less. NULL: the distance
@@ -35,6 +36,7 @@ typedef struct aisle_cspace {
     void *context;                       // passed to the functions
     void (*sample)(void *context, aisle_rng *rng, double *q);
     void (*sample_between)(void *context, aisle_rng *rng, const double *a, const double *b, double most, double *q);
+    void (*retract)(void *context, double *q);
     double (*distance)(void *context, const double *a, const double *b);
     double (*cost)(void *context, const double *a, const double *b);
     double (*bound)(void *context, const double *a, const double *b);

@@ -468,7 +468,7 @@ static void join_end(aisle_roadmap_search *self, uint32_t end, const double *q) 
     const old_list none = {.degree = 0};
     uint8_t *place = self->end_place + (end == start_of(roadmap) ? 0U : self->capacity);
     memcpy(config_at(roadmap, end), q, roadmap->dim * sizeof *q);
-    memset(place, 0, self->capacity);
+    memset(place, 0, roadmap->count);
     make_list(roadmap, end, &none);
     for (uint32_t i = 0; i < roadmap->degree[end]; i++) {
         place[roadmap->list[end * roadmap->k + i]] = (uint8_t)(i + 1U);
@@ -524,11 +524,14 @@ void aisle_roadmap_ask(aisle_roadmap_search *self, aisle_roadmap *roadmap, aisle
     self->kind = kind;
     self->expanded = 0;
     self->tests = 1;
-    const uint32_t nodes = roadmap->capacity + 2U;
-    for (uint32_t i = 0; i < nodes; i++) {
+    for (uint32_t i = 0; i < roadmap->count; i++) {
         self->cost[i] = (double)INFINITY;
     }
-    memset(self->is_done, 0, nodes);
+    memset(self->is_done, 0, roadmap->count);
+    for (uint32_t end = start_of(roadmap); end <= goal_of(roadmap); end++) {
+        self->cost[end] = (double)INFINITY;
+        self->is_done[end] = 0;
+    }
     aisle_heap_clear(&self->open);
     join_end(self, start_of(roadmap), from);
     join_end(self, goal_of(roadmap), to);

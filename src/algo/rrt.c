@@ -132,14 +132,8 @@ static bool may_run_through(const aisle_rrt *self, const double *q) {
            aisle_rrt_cost(self);
 }
 
-static void draw(aisle_rrt *self, double *q) {
+static void draw_any(aisle_rrt *self, double *q) {
     const aisle_cspace *space = self->cfg.space;
-    if (self->cfg.goal_bias > 0.0 && !is_reached(self) && (double)aisle_rng_float(&self->rng) < self->cfg.goal_bias) {
-        for (uint32_t d = 0; d < space->dim; d++) {
-            q[d] = self->cfg.goal[d];
-        }
-        return;
-    }
     const bool informed = self->cfg.informed && is_reached(self);
     if (informed && space->sample_between != NULL) {
         space->sample_between(space->context, &self->rng, self->cfg.start, self->cfg.goal, aisle_rrt_cost(self), q);
@@ -149,6 +143,20 @@ static void draw(aisle_rrt *self, double *q) {
     do {
         space->sample(space->context, &self->rng, q);
     } while (informed && !may_run_through(self, q) && ++tries < REJECTED);
+}
+
+static void draw(aisle_rrt *self, double *q) {
+    const aisle_cspace *space = self->cfg.space;
+    if (self->cfg.goal_bias > 0.0 && !is_reached(self) && (double)aisle_rng_float(&self->rng) < self->cfg.goal_bias) {
+        for (uint32_t d = 0; d < space->dim; d++) {
+            q[d] = self->cfg.goal[d];
+        }
+        return;
+    }
+    draw_any(self, q);
+    if (self->cfg.retract && space->retract != NULL && !is_reached(self)) {
+        space->retract(space->context, q);
+    }
 }
 
 // A step from a node towards `to`: q, if the motion there, or what is left of it after halving, is free.

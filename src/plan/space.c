@@ -296,6 +296,12 @@ bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p) {
     return self->grid->field[aisle_lattice_cell(&self->grid->lattice, p, &inside)] >= self->far_field && inside;
 }
 
+bool aisle_space_is_covered(const aisle_space *self, aisle_vec2 p) {
+    bool inside;
+    (void)aisle_lattice_cell(&self->grid->lattice, p, &inside);
+    return inside && aisle_grid_gap_upper(self->grid, p) < self->reach;
+}
+
 static double root_of(const aisle_space *self, uint16_t field) {
     return field < AISLE_SPACE_ROOTS ? (double)self->root[field] : sqrt((double)field);
 }

@@ -94,6 +94,10 @@ double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, in
 // Is p so far from everything that the margin is kept at every heading and no objective cares? One look at the field.
 bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p);
 
+// Is p surely so near to an obstacle that its centre may not be there (FREE_TURN: that the disc may not, ALONG: that no body
+// may)? One look at the field: "yes" is a proof, "no" says nothing.
+bool aisle_space_is_covered(const aisle_space *self, aisle_vec2 p);
+
 // About the clearance of the footprint driven through p: the field, interpolated, less the inner radius;
 // far_clearance where far.
 // Cheap; for costs, but never above the truth by as much as a cell's side: the four centres' distances are told right,

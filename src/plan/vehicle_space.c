@@ -13,10 +13,13 @@
 #define SAMPLES 4000000U // of a tree until there is a path
 #define MORE 6000U       // of a star, after that
 #define PLAIN 100000U    // samples of the paper's form
-#define HALVINGS 6U      // of a motion that is not free, but in the paper's form
+#define HALVINGS 2U      // of a motion that is not free, but in the paper's form
 #define GOAL_BIAS 0.05
 #define STEP_SHARE 0.2 // of the bounds' diagonal: the step where none is asked for
 #define TINY 1e-9      // m
+#define ROOM 1.5       // cells, beyond the reach, that a place moved off an obstacle has if there is room
+#define CLIMB 64U      // cells that it is moved, at most
+#define PROBES 64U     // parts of a motion that are looked at in the field first, at most
 
 aisle_steer_rule aisle_vehicle_space_rule(const aisle_vehicle *vehicle) {
     // Not the tightest arc: the verifier reads the curvature as a float.
@@ -65,6 +68,31 @@ static void draw_in_ellipse(void *context, aisle_rng *rng, const double *a, cons
     }
 }
 
+// Uphill in the field from a place that is too near to an obstacle, cell by cell, until the disc fits or on a ridge. What is
+// within an obstacle stays: nothing is uphill there.
+static void move_off(void *context, double *q) {
+    const aisle_space *space = ((const aisle_vehicle_space *)context)->space;
+    const aisle_lattice *lattice = &space->grid->lattice;
+    const uint16_t *field = space->grid->field;
+    const double enough = space->reach / lattice->res + ROOM, squared = enough * enough;
+    uint32_t at = aisle_lattice_cell(lattice, aisle_vec2_of(q[0], q[1]), NULL);
+    for (uint32_t steps = 0; steps < CLIMB && (double)field[at] < squared; steps++) {
+        const uint32_t x = at % lattice->w, y = at / lattice->w;
+        uint32_t best = at;
+        for (uint32_t iy = y > 0U ? y - 1U : 0U; iy <= y + 1U && iy < lattice->h; iy++) {
+            for (uint32_t ix = x > 0U ? x - 1U : 0U; ix <= x + 1U && ix < lattice->w; ix++) {
+                best = field[iy * lattice->w + ix] > field[best] ? iy * lattice->w + ix : best;
+            }
+        }
+        if (best == at) {
+            return;
+        }
+        q[0] += lattice->res * ((double)(best % lattice->w) - (double)x);
+        q[1] += lattice->res * ((double)(best / lattice->w) - (double)y);
+        at = best;
+    }
+}
+
 static double length_between(void *context, const double *a, const double *b) {
     (void)context;
     return aisle_vec2_distance(aisle_vec2_of(a[0], a[1]), aisle_vec2_of(b[0], b[1]));
@@ -79,9 +107,28 @@ static void go_straight(void *context, const double *a, const double *b, double 
     q[1] = part < 1.0 ? p.y : b[1];
 }
 
+// Does one look at the field each say that the end, or a place between, is covered? The ways halved, quartered and so on,
+// until places lie nearer together than what covers them is wide.
+static bool is_surely_blocked(const aisle_vehicle_space *self, aisle_vec2 a, aisle_vec2 b) {
+    if (aisle_space_is_covered(self->space, b)) {
+        return true;
+    }
+    const double most = aisle_vec2_distance(a, b) / (2.0 * self->space->reach);
+    for (uint32_t parts = 2; parts <= PROBES && (double)parts < 2.0 * most; parts *= 2U) {
+        for (uint32_t i = 1; i < parts; i += 2U) {
+            if (aisle_space_is_covered(self->space, aisle_vec2_lerp(a, b, (double)i / parts))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 static bool is_straight_free(void *context, const double *a, const double *b, uint32_t *units) {
     const aisle_vehicle_space *self = (const aisle_vehicle_space *)context;
-    return aisle_space_sweep_free(self->space, aisle_vec2_of(a[0], a[1]), aisle_vec2_of(b[0], b[1]), units);
+    const aisle_vec2 from = aisle_vec2_of(a[0], a[1]), to = aisle_vec2_of(b[0], b[1]);
+    *units += 1U;
+    return !is_surely_blocked(self, from, to) && aisle_space_sweep_free(self->space, from, to, units);
 }
 
 // ---- POSE
@@ -187,6 +234,7 @@ aisle_rrt_config aisle_vehicle_space_rrt(const aisle_vehicle_space *self, bool s
     cfg.halvings = !adaptive ? 0U : plain ? 1U : HALVINGS;
     if (!plain) {
         cfg.informed = star;
+        cfg.retract = true;
         cfg.goal_bias = GOAL_BIAS;
         cfg.reach = (double)INFINITY;
     }
@@ -209,6 +257,7 @@ void aisle_vehicle_space_begin(aisle_vehicle_space *self, const aisle_space *spa
                                   .context = self,
                                   .sample = draw_anywhere,
                                   .sample_between = draw_in_ellipse,
+                                  .retract = move_off,
                                   .cost = is_pose ? cost_between : NULL,
                                   .bound = is_pose ? length_between : NULL,
                                   .steer = is_pose ? drive : go_straight,

@@ -2,11 +2,14 @@
 //
 // PLACE: (x, y) for a body whose heading does not matter, or for the disc in which it turns: straight motions, tested by
 // the space's own sweep (aisle_space_sweep_free(), mode FREE_TURN): by steps of the distance field where obstacles are far,
-// by exact shapes where they are near. Cost: length.
+// by exact shapes where they are near. Before that the field is looked at, at the end first and then at halves, quarters and so
+// on: most motions that are not free are refused by one or two looks. Cost: length.
 // POSE: (x, y, theta) for all others. The motion between two configurations is the cheapest way of steer.h: lines, arcs and
 // turns on the spot, a car's words; the exact body is tested along every move (aisle_space_moves_free()). Cost: steer.h's,
 // so that a metre backwards, a cusp and a turn are dearer. Nearest by the Euclidean distance of (x, y,
 // AISLE_VEHICLE_SPACE_TURN * theta).
+// retract(), both: uphill in the distance field, cell by cell, until the disc about the origin (PLACE: the whole body's, POSE:
+// the one inside it) has a cell and a half to spare, or on a ridge; headings stay, and what lies within an obstacle, too.
 // Both keep off DIRECTED zones they are against.
 // Memory: none. Time: a motion is O(1) in the open, O(metres near obstacles * obstacles near) else; POSE as many times as its
 // way has moves.

@@ -249,6 +249,35 @@ static void test_spoilt_memory_is_noticed(void) {
     TEST_ASSERT_FALSE(aisle_rrt_invariants_hold(&tree));
 }
 
+static uint32_t retracted;
+
+static void retract(void *context, double *q) {
+    (void)context;
+    retracted++;
+    if (q[0] > 0.4 && q[0] < 0.6) { // into the slit
+        q[1] = 0.62;
+    }
+}
+
+static void test_samples_are_retracted_if_that_is_asked_until_there_is_a_path(void) {
+    uint32_t plain = 0, moved = 0;
+    space.retract = retract;
+    cfg.star = true;
+    cfg.more = 200;
+    cfg.goal_bias = 0.0;
+    for (cfg.seed = 0; cfg.seed < SEEDS; cfg.seed++) {
+        for (int asked = 0; asked < 2; asked++) {
+            cfg.retract = asked != 0;
+            retracted = 0;
+            TEST_ASSERT_EQUAL(AISLE_OK, grow(UINT32_MAX));
+            judge_path();
+            TEST_ASSERT_EQUAL_UINT32(asked != 0 ? tree.first_sample : 0U, retracted);
+            *(asked != 0 ? &moved : &plain) += tree.first_sample;
+        }
+    }
+    TEST_ASSERT_TRUE(moved < plain);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_planner_finds_a_free_way_through_the_slit);
@@ -260,5 +289,6 @@ int main(void) {
     RUN_TEST(test_a_goal_in_sight_is_reached_at_once);
     RUN_TEST(test_a_config_that_breaks_a_rule_is_refused_and_changes_nothing);
     RUN_TEST(test_spoilt_memory_is_noticed);
+    RUN_TEST(test_samples_are_retracted_if_that_is_asked_until_there_is_a_path);
     return UNITY_END();
 }

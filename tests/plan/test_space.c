@@ -244,6 +244,23 @@ static void test_clearance_about_follows_the_field_within_a_cell(void) {
     }
 }
 
+static void test_what_is_told_covered_is_too_near_to_an_obstacle(void) {
+    aisle_rng rng = aisle_rng_seed(8);
+    random_hall(&rng);
+    open_space(AISLE_SPACE_FREE_TURN);
+    int covered = 0, near = 0;
+    for (int i = 0; i < 4000; i++) {
+        aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(0.0, 0.0), aisle_vec2_of(12.0, 9.0));
+        const double gap = (double)hall_disc_gap(p.x, p.y, 0.0) - space.reach;
+        near += gap < -0.25 ? 1 : 0;
+        if (aisle_space_is_covered(&space, p)) {
+            TEST_ASSERT_TRUE(gap < 0.0);
+            covered++;
+        }
+    }
+    TEST_ASSERT_TRUE(covered >= near && near > 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_cell_is_free_just_where_the_disc_has_its_margin_and_the_steps_slack);
@@ -256,5 +273,6 @@ int main(void) {
     RUN_TEST(test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_every_seed);
     RUN_TEST(test_a_piece_is_free_just_where_its_sampled_gap_is_enough_for_every_seed);
     RUN_TEST(test_clearance_about_follows_the_field_within_a_cell);
+    RUN_TEST(test_what_is_told_covered_is_too_near_to_an_obstacle);
     return UNITY_END();
 }

@@ -117,10 +117,70 @@ static void test_samples_between_are_those_a_cheaper_way_may_run_through(void) {
     TEST_ASSERT_INT_WITHIN(DRAWS / 8, DRAWS / 2, above);
 }
 
+// A motion of a disc that is refused comes nearer than what is kept, the field's first looks and the exact test alike.
+static void test_a_motion_that_is_refused_comes_too_near_somewhere(void) {
+    hall_disc(0.3, 0.05F);
+    open_hall(AISLE_VEHICLE_SPACE_PLACE);
+    const aisle_cspace *c = &configurations.cspace;
+    aisle_rng rng = aisle_rng_seed(6);
+    double a[2], b[2], q[2];
+    int refused = 0;
+    for (int i = 0; i < DRAWS; i++) {
+        uint32_t units = 0;
+        c->sample(c->context, &rng, a);
+        c->sample(c->context, &rng, b);
+        if (c->is_free(c->context, a, b, &units)) {
+            continue;
+        }
+        double least = 1.0;
+        for (int k = 0; k <= 2000; k++) {
+            c->steer(c->context, a, b, k / 2000.0, q);
+            least = fmin(least, (double)hall_disc_gap(q[0], q[1], hall_vehicle.outer_radius));
+        }
+        TEST_ASSERT_TRUE(least < hall_vehicle.margin + AISLE_SPACE_SLACK + 1e-4);
+        refused++;
+    }
+    TEST_ASSERT_TRUE(refused > DRAWS / 10);
+}
+
+static void judge_retracting(uint64_t seed, double most) {
+    const aisle_cspace *c = &configurations.cspace;
+    aisle_rng rng = aisle_rng_seed(seed);
+    double p[3], q[3];
+    int stuck = 0, freed = 0;
+    for (int i = 0; i < 4 * DRAWS; i++) {
+        c->sample(c->context, &rng, p);
+        memcpy(q, p, sizeof q);
+        c->retract(c->context, q);
+        const double before = (double)hall_disc_gap(p[0], p[1], 0.0) - space.reach;
+        const double after = (double)hall_disc_gap(q[0], q[1], 0.0) - space.reach;
+        TEST_ASSERT_TRUE(q[0] >= c->lo[0] && q[0] <= c->hi[0] && q[1] >= c->lo[1] && q[1] <= c->hi[1]);
+        TEST_ASSERT_TRUE(c->dim == 2U || !(p[2] < q[2] || p[2] > q[2]));
+        if (before > most) {
+            TEST_ASSERT_EQUAL_MEMORY(p, q, c->dim * sizeof *p);
+        } else if (before < 0.0) {
+            stuck += after < 0.0 ? 1 : 0;
+            freed += after >= 0.0 ? 1 : 0;
+        }
+    }
+    TEST_ASSERT_TRUE(freed > 0 && freed > stuck / 4);
+}
+
+static void test_samples_beside_obstacles_are_moved_off_them_and_free_ones_stay(void) {
+    hall_disc(0.3, 0.05F);
+    open_hall(AISLE_VEHICLE_SPACE_PLACE);
+    judge_retracting(7, 0.2);
+    hall_rectangle(1.0, 0.6, 0.05F);
+    open_hall(AISLE_VEHICLE_SPACE_POSE);
+    judge_retracting(8, 0.2);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_steering_joins_any_two_configurations);
     RUN_TEST(test_no_configuration_on_a_free_motion_is_nearer_than_the_margin);
     RUN_TEST(test_samples_between_are_those_a_cheaper_way_may_run_through);
+    RUN_TEST(test_a_motion_that_is_refused_comes_too_near_somewhere);
+    RUN_TEST(test_samples_beside_obstacles_are_moved_off_them_and_free_ones_stay);
     return UNITY_END();
 }

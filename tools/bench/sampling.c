@@ -4,7 +4,7 @@
 //
 // The hall as hall.h says; headings are left out (configurations are places). PLANNER: as options_t has it, RRT to PRM. STEP:
 // m. PLAIN 0: what the library makes of it; 1: the paper's form. SAMPLES: at most, 0: as the library. MS: a star goes on for so
-// long (of process time), 0: until its samples end. Per seed: ms and samples to the first path and its length, nodes, lengths
+// long (of process time), 0: until its samples end, below 0: until it has a path. Per seed: ms and samples to the first path and its length, nodes, lengths
 // at 1, 5, 20 and 100 ms, the last path; null where there is none. TREE: lines "x y parent_x parent_y", then "path x y ...".
 // PRM: lazy, FIRST_DRAWS draws and twice as many whenever they do not join the ends or, with MS, as long as there is time;
 // STEP and PLAIN mean nothing to it.
@@ -197,7 +197,7 @@ int main(int argc, char **argv) {
         cfg.samples = (uint32_t)atol(argv[6]);
     }
     cap = atof(argv[7]);
-    cfg.more = cap > 0.0 ? UINT32_MAX : cfg.more;
+    cfg.more = cap > 0.0 ? UINT32_MAX : cap < 0.0 ? 0U : cfg.more;
     printf("[");
     for (long i = 0; i < seeds; i++) {
         cfg.seed = (uint64_t)(first_seed + i);

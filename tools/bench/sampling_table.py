@@ -51,8 +51,8 @@ SLITS = ("narrow_10", "narrow_03")
 
 
 def ours(program: Path, text: str, planner: int, seeds: int, cap: float, step: float = 0.0) -> list[dict]:
-    """step above 0: the paper's form with this step, without a cap."""
-    words = [program, planner, step, int(step > 0.0), 1, seeds, 0, 1e3 * cap]
+    """step above 0: the paper's form with this step, to the first path, without a cap."""
+    words = [program, planner, step, int(step > 0.0), 1, seeds, 0, -1 if step > 0.0 else 1e3 * cap]
     done = subprocess.run([str(w) for w in words], input=text, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{program}: exit {done.returncode}: {done.stderr}")
@@ -63,11 +63,11 @@ def radius_of(raw: dict) -> float:
     return (raw["robot"].get("radius") or 1e-3) + SLACK
 
 
-def theirs(program: Path, raw: dict, name: str, pair: tuple[float, ...], seeds: int, cap: float) -> list[dict]:
+def theirs(program: Path, raw: dict, bounds: tuple[float, ...], name: str, pair: tuple[float, ...], seeds: int,
+           cap: float) -> list[dict]:
     radius = radius_of(raw)
-    x0, y0, x1, y1 = raw["bounds"]
-    ends_x, ends_y = (pair[0], pair[2]), (pair[1], pair[3])  # may lie nearer to the bounds: OMPL wants them in its box
-    box = (min(x0 + radius, *ends_x), min(y0 + radius, *ends_y), max(x1 - radius, *ends_x), max(y1 - radius, *ends_y))
+    x0, y0, x1, y1 = bounds
+    box = (x0 + radius, y0 + radius, x1 - radius, y1 - radius)
     numbers = [1, seeds, cap, *box, radius, *pair, len(raw["obstacles"])]
     for o in raw["obstacles"]:
         numbers += [len(o), *(v for p in o for v in p)]
@@ -118,7 +118,7 @@ def compare(args: argparse.Namespace, path: Path, leg: int, ompl: Path | None) -
     title = path.stem + (f" {leg + 1}" if len(stops) > 2 else "")
     rows: dict = {"scenario": title, "ours": {}, "ompl": {}}
     for name in THEIRS if ompl is not None else ():
-        runs = theirs(ompl, raw, name, pair, args.seeds, args.cap)
+        runs = theirs(ompl, raw, scenario.world.bounds, name, pair, args.seeds, args.cap)
         check_paths(runs, raw, pair, f"{title}: OMPL {name}")
         rows["ompl"][name] = summary(runs, args.cap)
     for name, planner in OURS.items():
