@@ -144,7 +144,7 @@ static void divide_seed(aisle_barrier *self, double spacing, const aisle_vec2 *p
     add_station(self, points[0], aisle_vec2_of(0.0, 0.0));
     for (uint32_t i = 0; i + 1U < count; i++) {
         const aisle_vec2 along = aisle_vec2_sub(points[i + 1U], points[i]);
-        const double pieces = aisle_max(ceil(aisle_vec2_length(along) / spacing), 1.0);
+        const double pieces = aisle_max(-floor(-aisle_vec2_length(along) / spacing), 1.0);
         for (double k = 1.0; k < pieces; k += 1.0) {
             add_station(self, aisle_vec2_lerp(points[i], points[i + 1U], k / pieces), along);
         }
