@@ -154,7 +154,7 @@ static void draw(aisle_rrt *self, double *q) {
         return;
     }
     draw_any(self, q);
-    if (self->cfg.retract && space->retract != NULL && !is_reached(self)) {
+    if (self->cfg.retract && space->retract != NULL && self->samples % 2U == 0U && !is_reached(self)) {
         space->retract(space->context, q);
     }
 }

@@ -10,7 +10,7 @@
 // once a path is known, only configurations are drawn that a cheaper one could run through.
 // The paper's fixed planners know steps of one size alone (whole_steps), its adaptive ones adapt theirs. Its plain form is a config with only start, goal, step, halvings (0 or 1), whole_steps and star: nothing else is then done but
 // what its algorithms say. Ours, by config: `halvings` above 1 halves again and again; `goal_bias`; `reach` lets any new
-// node try the goal that is that near; `informed`; `retract`: until there is a path, a sample that touches something is moved
+// node try the goal that is that near; `informed`; `retract`: until there is a path, every other sample that touches something is moved
 // off it, so that places beside obstacles and in slits, where few samples are free, are drawn as often as the room about them
 // (as Wilmarth, Amato & Stiller 1999, doi:10.1109/ROBOT.1999.772448, retract all samples onto the middle of the free room).
 // The goal is a node of the tree without children: best parent and rewiring are its, too.
@@ -35,7 +35,7 @@ typedef struct aisle_rrt_config {
     bool whole_steps;  // a new node is a whole step away, or what halving leaves of one: nearer samples are dropped
     bool star;         // best parent and rewiring; the run goes on after the first path
     bool informed;     // of a star: sample where a cheaper path may run
-    bool retract; // until there is a path, samples that are not free are moved off what they touch, if the space can
+    bool retract; // until there is a path, every other sample is moved off what it touches, if the space can do that
     double goal_bias; // [0, 1), share of samples that are the goal itself
     double reach;     // >= 0, distance from which a new node tries the goal; 0: step. INFINITY: from everywhere
     uint32_t samples; // drawn at most until there is a path, >= 1

@@ -75,6 +75,9 @@ static void move_off(void *context, double *q) {
     const aisle_lattice *lattice = &space->grid->lattice;
     const uint16_t *field = space->grid->field;
     const double enough = space->reach / lattice->res + ROOM, squared = enough * enough;
+    if (!aisle_space_is_covered(space, aisle_vec2_of(q[0], q[1]))) {
+        return;
+    }
     uint32_t at = aisle_lattice_cell(lattice, aisle_vec2_of(q[0], q[1]), NULL);
     for (uint32_t steps = 0; steps < CLIMB && (double)field[at] < squared; steps++) {
         const uint32_t x = at % lattice->w, y = at / lattice->w;
