@@ -127,7 +127,7 @@ static void search(aisle_route *self, const aisle_route_guide *guide) {
                                              .reach = guide == &self->guide[0] ? vehicle->inner_radius + vehicle->margin
                                                                                : guide->reach,
                                              .clear = vehicle->creep_clearance + AISLE_ROUTE_CREEP_SPARE,
-                                             .dear = eases ? (uint32_t)aisle_clamp(dear, 1.0, AISLE_TOGO_DEAR_MAX) : 1U,
+                                             .dear = eases ? (uint32_t)aisle_clamp(dear, 2.0, AISLE_TOGO_DEAR_MAX) : 1U,
                                              .units = eases ? EASE_UNITS : 0U};
     aisle_manoeuvre_start(&self->manoeuvre, &request);
     self->other_guide = guide != &self->guide[0];
