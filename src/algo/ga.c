@@ -1,10 +1,10 @@
 #include "algo/ga.h"
 
+#include "algo/box.h"
 #include "base/check.h"
 
 #include <math.h>
 
-#define BOX_MAX 1e30F // differences and their multiples stay finite
 #define REACH 0.1F
 #define BLEND 0.5 // alpha of BLX
 #define SIZES 16U // of a mutation
@@ -58,14 +58,6 @@ aisle_ga_config aisle_ga_modern(uint16_t genes, uint32_t generations) {
                              .elite = 2};
 }
 
-static float clamp(float x, float lo, float hi) {
-    return x < lo ? lo : (x > hi ? hi : x);
-}
-
-static bool within(float x, float lo, float hi) {
-    return x >= lo && x <= hi;
-} // false for NaN
-
 // ---- coding
 
 static uint64_t code_max(const aisle_ga_config *cfg) {
@@ -82,7 +74,7 @@ static uint64_t encode(const aisle_ga_config *cfg, uint32_t i, float x) {
 
 static float decode(const aisle_ga_config *cfg, uint32_t i, uint64_t code) {
     const double lo = (double)cfg->lo[i], hi = (double)cfg->hi[i];
-    return clamp((float)((double)code * (hi - lo) / (double)code_max(cfg) + lo), cfg->lo[i], cfg->hi[i]);
+    return aisle_box_clamp((float)((double)code * (hi - lo) / (double)code_max(cfg) + lo), cfg->lo[i], cfg->hi[i]);
 }
 
 static float value_of(const aisle_ga_config *cfg, uint32_t i, aisle_ga_gene gene) {
@@ -106,23 +98,18 @@ static aisle_ga_gene *point_of(const aisle_ga *self, aisle_ga_gene *genes, uint3
 // ---- start
 
 static bool box_is_good(const aisle_ga_config *cfg) {
-    for (uint32_t i = 0; i < cfg->genes; i++) {
-        if (!(within(cfg->lo[i], -BOX_MAX, BOX_MAX) && within(cfg->hi[i], -BOX_MAX, BOX_MAX) &&
-              cfg->lo[i] < cfg->hi[i])) {
-            return false;
-        }
-    }
     for (uint32_t i = 0; cfg->seeds != NULL && i < (uint32_t)cfg->seed_count * cfg->genes; i++) {
         if (!isfinite(cfg->seeds[i])) {
             return false;
         }
     }
-    return true;
+    return aisle_box_is_good(cfg->lo, cfg->hi, cfg->genes);
 }
 
 static bool rates_are_good(const aisle_ga_config *cfg) {
-    return within(cfg->pc, 0.0F, 1.0F) && within(cfg->pm, 0.0F, 1.0F) && within(cfg->reach, 0.0F, 1.0F) &&
-           within(cfg->spread, 0.0F, BOX_MAX) && !isnan(cfg->value_goal);
+    return aisle_box_within(cfg->pc, 0.0F, 1.0F) && aisle_box_within(cfg->pm, 0.0F, 1.0F) &&
+           aisle_box_within(cfg->reach, 0.0F, 1.0F) && aisle_box_within(cfg->spread, 0.0F, AISLE_BOX_MAX) &&
+           !isnan(cfg->value_goal);
 }
 
 static bool ways_are_good(const aisle_ga_config *cfg) {
@@ -161,7 +148,7 @@ static aisle_ga_gene draw(aisle_ga *self, uint32_t i) {
     if (cfg->coding == AISLE_GA_BINARY) {
         gene.code = bits_of(self) & code_max(cfg);
     } else {
-        gene.x = clamp((float)(lo + random_of(self) * (hi - lo)), cfg->lo[i], cfg->hi[i]);
+        gene.x = aisle_box_clamp((float)(lo + random_of(self) * (hi - lo)), cfg->lo[i], cfg->hi[i]);
     }
     return gene;
 }
@@ -223,7 +210,7 @@ static void swap_bits(aisle_ga *self, aisle_ga_gene *a, aisle_ga_gene *b) {
 static float blend(aisle_ga *self, uint32_t i, float a, float b) {
     const double least = (double)(a < b ? a : b), most = (double)(a < b ? b : a);
     const double at = least + (random_of(self) * (1.0 + 2.0 * BLEND) - BLEND) * (most - least);
-    return clamp((float)at, self->cfg.lo[i], self->cfg.hi[i]);
+    return aisle_box_clamp((float)at, self->cfg.lo[i], self->cfg.hi[i]);
 }
 
 static void cross(aisle_ga *self, uint32_t i, aisle_ga_gene *a, aisle_ga_gene *b) {
@@ -249,7 +236,7 @@ static void mutate_real(aisle_ga *self, uint32_t i, aisle_ga_gene *gene) {
     const double span = (double)cfg->hi[i] - (double)cfg->lo[i];
     const double shrink = (double)(1U << aisle_rng_below(&self->rng, SIZES));
     const double move = (2.0 * random_of(self) - 1.0) * reach * span / shrink;
-    gene->x = clamp((float)((double)gene->x + move), cfg->lo[i], cfg->hi[i]);
+    gene->x = aisle_box_clamp((float)((double)gene->x + move), cfg->lo[i], cfg->hi[i]);
 }
 
 static void mutate_each(aisle_ga *self, aisle_ga_gene *genes) {
@@ -422,7 +409,7 @@ static bool point_holds(const aisle_ga *self, const aisle_ga_gene *genes) {
     const aisle_ga_config *cfg = &self->cfg;
     for (uint32_t i = 0; i < cfg->genes; i++) {
         const bool is_good = cfg->coding == AISLE_GA_BINARY ? genes[i].code <= code_max(cfg)
-                                                            : within(genes[i].x, cfg->lo[i], cfg->hi[i]);
+                                                            : aisle_box_within(genes[i].x, cfg->lo[i], cfg->hi[i]);
         if (!is_good) {
             return false;
         }
@@ -466,7 +453,7 @@ bool aisle_ga_invariants_hold(const aisle_ga *self) {
         }
     }
     for (uint32_t i = 0; self->best_updates > 0U && i < cfg->genes; i++) {
-        if (!within(self->best[i], cfg->lo[i], cfg->hi[i])) {
+        if (!aisle_box_within(self->best[i], cfg->lo[i], cfg->hi[i])) {
             return false;
         }
     }

@@ -1,10 +1,10 @@
 #include "algo/pso.h"
 
+#include "algo/box.h"
 #include "base/check.h"
 
 #include <math.h>
 
-#define BOX_MAX 1e30F // differences and their products with c stay finite
 #define CONSTRICTION_W 0.729844F
 #define CONSTRICTION_C 1.49618F
 
@@ -29,37 +29,25 @@ static float *g_of(const aisle_pso *self) {
     return p_cost_of(self, self->cfg->particles);
 }
 
-static float clamp(float x, float lo, float hi) {
-    return x < lo ? lo : (x > hi ? hi : x);
-}
-
-static bool within(float x, float lo, float hi) {
-    return x >= lo && x <= hi;
-} // false for NaN
-
 static bool box_is_good(const aisle_pso_config *cfg) {
     for (uint32_t i = 0; i < cfg->dim; i++) {
-        if (!(within(cfg->lo[i], -BOX_MAX, BOX_MAX) && within(cfg->hi[i], -BOX_MAX, BOX_MAX) &&
-              cfg->lo[i] < cfg->hi[i])) {
-            return false;
-        }
         if (cfg->guess != NULL && !isfinite(cfg->guess[i])) {
             return false;
         }
     }
-    return true;
+    return aisle_box_is_good(cfg->lo, cfg->hi, cfg->dim);
 }
 
 static bool weights_are_good(const aisle_pso_config *cfg) {
     return (cfg->inertia == AISLE_PSO_FALLING || cfg->inertia == AISLE_PSO_CONSTRICTION) &&
-           within(cfg->w_start, 0.0F, 1.0F) && within(cfg->w_end, 0.0F, 1.0F) && within(cfg->c1, 0.0F, 4.0F) &&
-           within(cfg->c2, 0.0F, 4.0F);
+           aisle_box_within(cfg->w_start, 0.0F, 1.0F) && aisle_box_within(cfg->w_end, 0.0F, 1.0F) &&
+           aisle_box_within(cfg->c1, 0.0F, 4.0F) && aisle_box_within(cfg->c2, 0.0F, 4.0F);
 }
 
 static bool config_is_good(const aisle_pso_config *cfg) {
     return cfg->cost != NULL && cfg->lo != NULL && cfg->hi != NULL && cfg->dim >= 1 && cfg->dim <= AISLE_PSO_DIM_MAX &&
            cfg->particles >= 2 && cfg->particles <= AISLE_PSO_PARTICLES_MAX && cfg->eval_max >= cfg->particles &&
-           !isnan(cfg->value_goal) && cfg->spread >= 0.0F && cfg->spread <= BOX_MAX && weights_are_good(cfg) &&
+           !isnan(cfg->value_goal) && cfg->spread >= 0.0F && cfg->spread <= AISLE_BOX_MAX && weights_are_good(cfg) &&
            box_is_good(cfg);
 }
 
@@ -74,7 +62,7 @@ static void draw(aisle_pso *self, uint32_t particle) {
         const float hi = cfg->hi[i];
         const float r = aisle_rng_float(&self->rng);
         const float at = near ? cfg->guess[i] + (2.0F * r - 1.0F) * cfg->spread * (hi - lo) : lo + r * (hi - lo);
-        x[i] = clamp(at, lo, hi);
+        x[i] = aisle_box_clamp(at, lo, hi);
         v[i] = 0.0F;
     }
 }
@@ -86,7 +74,7 @@ static void place(aisle_pso *self, uint32_t particle) {
     float *p = p_of(self, particle);
     for (uint32_t i = 0; i < cfg->dim; i++) {
         if (particle == 0 && cfg->guess != NULL) {
-            x[i] = clamp(cfg->guess[i], cfg->lo[i], cfg->hi[i]);
+            x[i] = aisle_box_clamp(cfg->guess[i], cfg->lo[i], cfg->hi[i]);
         }
         p[i] = x[i];
     }
@@ -173,10 +161,10 @@ static void move(aisle_pso *self, uint32_t particle) {
         const float v_max = 0.5F * (hi - lo);
         const float r1 = aisle_rng_float(&self->rng);
         const float r2 = aisle_rng_float(&self->rng);
-        v[i] = clamp(k.w * v[i] + k.c1 * r1 * (p[i] - x[i]) + k.c2 * r2 * (g[i] - x[i]), -v_max, v_max);
+        v[i] = aisle_box_clamp(k.w * v[i] + k.c1 * r1 * (p[i] - x[i]) + k.c2 * r2 * (g[i] - x[i]), -v_max, v_max);
         const float to = x[i] + v[i];
-        x[i] = clamp(to, lo, hi);
-        v[i] = within(to, lo, hi) ? v[i] : 0.0F;
+        x[i] = aisle_box_clamp(to, lo, hi);
+        v[i] = aisle_box_within(to, lo, hi) ? v[i] : 0.0F;
     }
 }
 
@@ -229,9 +217,9 @@ static bool particle_holds(const aisle_pso *self, uint32_t particle) {
     const float *p_cost = p_cost_of(self, particle);
     for (uint32_t i = 0; i < cfg->dim; i++) {
         const float v_max = 0.5F * (cfg->hi[i] - cfg->lo[i]);
-        if (!within(x_of(self, particle)[i], cfg->lo[i], cfg->hi[i]) ||
-            !within(p_of(self, particle)[i], cfg->lo[i], cfg->hi[i]) ||
-            !within(v_of(self, particle)[i], -v_max, v_max)) {
+        if (!aisle_box_within(x_of(self, particle)[i], cfg->lo[i], cfg->hi[i]) ||
+            !aisle_box_within(p_of(self, particle)[i], cfg->lo[i], cfg->hi[i]) ||
+            !aisle_box_within(v_of(self, particle)[i], -v_max, v_max)) {
             return false;
         }
     }
@@ -251,7 +239,7 @@ bool aisle_pso_invariants_hold(const aisle_pso *self) {
         return false;
     }
     for (uint32_t i = 0; i < cfg->dim; i++) {
-        if (!within(g_of(self)[i], cfg->lo[i], cfg->hi[i])) {
+        if (!aisle_box_within(g_of(self)[i], cfg->lo[i], cfg->hi[i])) {
             return false;
         }
     }
