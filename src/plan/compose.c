@@ -259,15 +259,7 @@ static bool has_room(const aisle_compose *self) {
 // The part of the piece in hand that ends at f.
 static aisle_waypoint_msg part_end(const aisle_compose *self, double f) {
     const aisle_waypoint_msg *to = &self->raw[self->at];
-    if (f >= 1.0) {
-        return *to;
-    }
-    aisle_pose2 p = aisle_piece_at(to - 1, to, f);
-    return (aisle_waypoint_msg){.x = p.x,
-                                .y = p.y,
-                                .theta = aisle_angle_wrap(p.theta),
-                                .curvature = to->curvature,
-                                .flags = (int16_t)(to->flags & AISLE_WAYPOINT_REVERSE)};
+    return f >= 1.0 ? *to : aisle_piece_part(to, f);
 }
 
 static void append(aisle_compose *self, const aisle_waypoint_msg *to) {
@@ -385,12 +377,15 @@ static aisle_status finish(aisle_compose *self) {
     const aisle_space *space = self->request.space;
     aisle_goal_dwells(path->waypoints, (uint32_t)path->num_waypoints, self->request.goals, self->request.leg_count,
                       self->dwell);
+    aisle_profile_path way = {path->waypoints,          self->dwell, (uint32_t)path->num_waypoints,
+                              AISLE_PATH_MAX_WAYPOINTS, 0,           0};
+    static const aisle_profile_start at_rest = {0.0, NULL};
     aisle_profile_sum sum;
-    aisle_status st = aisle_profile_fill(space->vehicle, space->layout, path->waypoints, (uint32_t)path->num_waypoints,
-                                         self->dwell, &sum);
+    aisle_status st = aisle_profile_fill_ramps(space->vehicle, space->layout, &way, &at_rest, &sum);
     if (st != AISLE_OK) {
         return st;
     }
+    path->num_waypoints = (int16_t)way.n;
     float least = (float)AISLE_CLEARANCE_CAP;
     for (int16_t i = 0; i < path->num_waypoints; i++) {
         least = path->waypoints[i].clearance < least ? path->waypoints[i].clearance : least;

@@ -269,7 +269,9 @@ static bool time_joined(aisle_drive *self, const aisle_drive_world *world, const
     aisle_profile_sum sum;
     aisle_goal_dwells(w, n, goals, num_goals, joined->dwell);
     joined->dwell[0] = 0.0F; // whatever is left of it is the mission's
-    const aisle_status st = aisle_profile_fill_moving(world->vehicle, world->layout, w, n, joined->dwell, &start, &sum);
+    aisle_profile_path way = {w, joined->dwell, n, AISLE_PATH_MAX_WAYPOINTS, 0, 0};
+    const aisle_status st = aisle_profile_fill_ramps(world->vehicle, world->layout, &way, &start, &sum);
+    joined->msg->num_waypoints = (int16_t)way.n;
     return st == AISLE_OK || st == AISLE_PARTIAL;
 }
 

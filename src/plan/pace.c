@@ -45,17 +45,6 @@ static bool is_turn(const aisle_waypoint_msg *from) {
     return (from->flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0;
 }
 
-// The part at f in (0, 1) of the piece that ends at `to`.
-static aisle_waypoint_msg between(const aisle_waypoint_msg *to, double f) {
-    const aisle_pose2 p = aisle_piece_at(to - 1, to, f);
-    return (aisle_waypoint_msg){.x = p.x,
-                                .y = p.y,
-                                .theta = aisle_angle_wrap(p.theta),
-                                .curvature = to->curvature,
-                                .clearance = to->clearance,
-                                .flags = (int16_t)(to->flags & AISLE_WAYPOINT_REVERSE)};
-}
-
 // The piece that holds the place x m from the start, and what lies before it. 0: x is at a waypoint, or off the path.
 static uint32_t piece_with(const knots *self, double x, double *before, double *length) {
     *before = 0.0;
@@ -80,7 +69,7 @@ static void put_knot(knots *self, double x) {
         self->overflow = true;
         return;
     }
-    const aisle_waypoint_msg knot = between(&self->w[i], (x - before) / length);
+    const aisle_waypoint_msg knot = aisle_piece_part(&self->w[i], (x - before) / length);
     memmove(&self->w[i + 1U], &self->w[i], (self->n - i) * sizeof self->w[0]);
     memmove(&self->dwell[i + 1U], &self->dwell[i], (self->n - i) * sizeof self->dwell[0]);
     self->w[i] = knot;
@@ -147,16 +136,20 @@ static uint32_t count_base(const aisle_pace_request *request, const aisle_waypoi
 
 // ---- speeds
 
-// Bounds of every waypoint: of the base, and `cap` on pieces that begin within `length` m.
-static void bound(aisle_pace *self, const knots *path, double cap, double length) {
+// Bounds of every waypoint: of the base, and `cap` on pieces that begin within `length` m. How many pieces begin on the base.
+static uint32_t bound(aisle_pace *self, const knots *path, double cap, double length) {
+    const aisle_verify_base *base = self->request.base;
     double s = 0.0;
+    uint32_t on_base = 0;
     self->most[0] = (float)cap;
     for (uint32_t i = 1; i < path->n; i++) {
         double most = s < length ? cap : (double)INFINITY;
+        on_base = base != NULL && s < base->reach - BASE_END ? i : on_base;
         s += aisle_piece_length(&path->w[i - 1], &path->w[i]);
         most = aisle_min(most, base_allows(&self->request, s, self->v));
         self->most[i] = most < AISLE_VEHICLE_SPEED_MAX ? aisle_float_below(most) : INFINITY;
     }
+    return on_base;
 }
 
 static aisle_status fill(aisle_pace *self, knots *path, double cap, double length, aisle_profile_sum *sum) {
@@ -167,10 +160,12 @@ static aisle_status fill(aisle_pace *self, knots *path, double cap, double lengt
     if (path->overflow) {
         return AISLE_ERR_CAPACITY;
     }
-    bound(self, path, cap, length);
+    const uint32_t on_base = bound(self, path, cap, length);
     const aisle_profile_start start = {self->v, self->most};
-    const aisle_status st = aisle_profile_fill_moving(self->request.vehicle, self->request.layout, path->w, path->n,
-                                                      path->dwell, &start, sum);
+    aisle_profile_path way = {
+        .w = path->w, .dwell = path->dwell, .n = path->n, .capacity = AISLE_PATH_MAX_WAYPOINTS, .whole = on_base};
+    const aisle_status st = aisle_profile_fill_ramps(self->request.vehicle, self->request.layout, &way, &start, sum);
+    path->n = way.n;
     return st == AISLE_PARTIAL ? AISLE_OK : st; // too fast for what follows: braked hard, as the look at it will know
 }
 

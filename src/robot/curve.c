@@ -220,3 +220,13 @@ aisle_pose2 aisle_piece_at(const aisle_waypoint_msg *from, const aisle_waypoint_
     return (aisle_pose2){p0.x + stretch * (cosine * chord.x - sine * chord.y),
                          p0.y + stretch * (sine * chord.x + cosine * chord.y), theta};
 }
+
+aisle_waypoint_msg aisle_piece_part(const aisle_waypoint_msg *to, double f) {
+    const aisle_pose2 p = aisle_piece_at(to - 1, to, f);
+    return (aisle_waypoint_msg){.x = p.x,
+                                .y = p.y,
+                                .theta = aisle_angle_wrap(p.theta),
+                                .curvature = to->curvature,
+                                .clearance = to->clearance,
+                                .flags = (int16_t)(to->flags & AISLE_WAYPOINT_REVERSE)};
+}

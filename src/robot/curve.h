@@ -64,4 +64,7 @@ void aisle_curve_goal(aisle_curve *self, int32_t id);
 
 // Point of the piece from -> to at fraction f in [0, 1]: position on the line or arc, theta by fraction.
 aisle_pose2 aisle_piece_at(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to, double f);
+
+// A waypoint there, f in (0, 1), of the piece from to - 1: with to's curvature, clearance and REVERSE, all else 0.
+aisle_waypoint_msg aisle_piece_part(const aisle_waypoint_msg *to, double f);
 #endif

@@ -13,6 +13,7 @@
 #define CUTS_MAX 64.0
 #define START_TOLERANCE 1e-6 // relative
 #define TOUCH 1e-6           // m, more than all rounding of places and gaps together
+#define RAMP_LEAST 1e-4      // m, of a part of a piece
 #define TOUCH_BENT 2e-3      // m, the same where the body turns or bends: more than the verifier's own overreach
 
 typedef struct piece { // between two waypoints
@@ -333,6 +334,134 @@ static aisle_status lay_out(const aisle_vehicle *vehicle, aisle_waypoint_msg *w,
     return AISLE_OK;
 }
 
+// ---- ramps
+
+typedef struct ramp { // of a piece driven faster than evenly
+    double up, down;  // m, from its start to where it stops speeding up, and braking to its end
+    double length;    // m
+} ramp;
+
+// What lies between the ends of piece i may be as fast as the faster of them: no bound bends there.
+static bool is_bounded_evenly(const aisle_profile_start *start, uint32_t i) {
+    return start->most == NULL || !isfinite(start->most[i]) || !(start->most[i - 1] != start->most[i]);
+}
+
+// Is piece i, its speeds, length and limit standing in w, worth being cut?
+static bool find_ramp(const aisle_vehicle *vehicle, const aisle_profile_start *start, const aisle_waypoint_msg *w,
+                      uint32_t i, ramp *out) {
+    const double v0 = (double)w[i - 1].v, v1 = (double)w[i].v, length = (double)w[i].s;
+    const double up = vehicle->a_max, down = vehicle->d_max;
+    if (!(v0 + v1 > 0.0) || !is_bounded_evenly(start, i)) { // a turn, or from rest to rest: a trapezoid as it is
+        return false;
+    }
+    const double highest = sqrt((2.0 * length * up * down + v0 * v0 * down + v1 * v1 * up) / (up + down));
+    const double peak = aisle_min(highest, (double)w[i].a);
+    if (peak < aisle_max(v0, v1)) {
+        return false;
+    }
+    *out = (ramp){(peak * peak - v0 * v0) / (2.0 * up), (peak * peak - v1 * v1) / (2.0 * down), length};
+    const double cruise = aisle_max(length - out->up - out->down, 0.0) / peak;
+    return 2.0 * length / (v0 + v1) - ((peak - v0) / up + (peak - v1) / down + cruise) > AISLE_PROFILE_RAMP_GAIN;
+}
+
+// Where to cut it, m from its start: at[2], rising.
+static uint32_t knots_of(const ramp *self, double at[2]) {
+    uint32_t n = 0;
+    if (self->up > RAMP_LEAST && self->up < self->length - RAMP_LEAST) {
+        at[n++] = self->up;
+    }
+    const double begins = self->length - self->down; // to brake
+    if (self->down > RAMP_LEAST && begins > (n > 0 ? at[0] : 0.0) + RAMP_LEAST) {
+        at[n++] = begins;
+    }
+    return n;
+}
+
+// How many waypoints the pieces from `path->whole` on want that there is room for; *last: the last of these pieces.
+static uint32_t count_knots(const aisle_vehicle *vehicle, const aisle_profile_start *start,
+                            const aisle_profile_path *path, uint32_t *last) {
+    uint32_t count = 0;
+    *last = path->whole;
+    for (uint32_t i = path->whole + 1U; i < path->n; i++) {
+        ramp cut;
+        double at[2];
+        const uint32_t more = find_ramp(vehicle, start, path->w, i, &cut) ? knots_of(&cut, at) : 0;
+        if (path->n + count + more > path->capacity) {
+            break;
+        }
+        count += more;
+        *last = i;
+    }
+    return count;
+}
+
+// Moves piece i, which ends at w[i], so that it ends at w[to], with `knots` waypoints before, at the piece's limit.
+static void spread(const aisle_profile_path *path, uint32_t i, uint32_t to, const ramp *cut, const double *at,
+                   uint32_t knots) {
+    aisle_waypoint_msg *w = path->w;
+    const aisle_waypoint_msg ends[2] = {w[i - 1], w[i]};
+    const uint32_t first = to - knots;
+    for (uint32_t k = 0; k < knots; k++) {
+        w[first + k] = aisle_piece_part(&ends[1], at[k] / cut->length);
+        w[first + k].v = w[first + k].a = ends[1].a;
+    }
+    w[to] = ends[1];
+    for (uint32_t k = 0; k <= knots && knots > 0; k++) {
+        const aisle_waypoint_msg *from = k > 0 ? &w[first + k - 1U] : &ends[0];
+        w[first + k].s = aisle_float_below(aisle_piece_length(from, &w[first + k]));
+    }
+    if (path->dwell != NULL) {
+        path->dwell[to] = path->dwell[i];
+        for (uint32_t k = 0; k < knots; k++) {
+            path->dwell[first + k] = 0.0F;
+        }
+    }
+}
+
+static void put_ramps(const aisle_vehicle *vehicle, const aisle_profile_start *start, aisle_profile_path *path) {
+    uint32_t last;
+    uint32_t shift = count_knots(vehicle, start, path, &last);
+    const uint32_t n = path->n + shift;
+    for (uint32_t i = path->n; i-- > 1 && shift > 0;) { // no shift is left at the first `whole`
+        ramp cut = {0};
+        double at[2] = {0.0, 0.0};
+        const uint32_t knots = i <= last && find_ramp(vehicle, start, path->w, i, &cut) ? knots_of(&cut, at) : 0;
+        spread(path, i, i + shift, &cut, at, knots);
+        path->mark += path->mark == i ? shift : 0U; // not met again: what comes is before i
+        shift -= knots;
+    }
+    path->n = n;
+}
+
+// ---- the whole
+
+static bool is_fit_to_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, const aisle_waypoint_msg *w,
+                           uint32_t n, const float *dwell, const aisle_profile_start *start) {
+    return vehicle != NULL && w != NULL && start != NULL && n > 0 && path_is_fit(w, n, dwell) &&
+           start_is_fit(w, n, dwell, start) && (layout == NULL || aisle_layout_is_in_force(layout));
+}
+
+// The limit of the first piece, whatever `most` says.
+static float bound_speeds(const aisle_vehicle *vehicle, const aisle_layout *layout, const aisle_profile_start *start,
+                          aisle_waypoint_msg *w, uint32_t n) {
+    AISLE_ASSERT(vehicle->v_max > 0.0 && vehicle->v_reverse_max > 0.0 && vehicle->creep_speed > 0.0);
+    AISLE_ASSERT(vehicle->a_max > 0.0 && vehicle->d_max > 0.0 && vehicle->omega_max > 0.0 && vehicle->alpha_max > 0.0);
+    bound_pieces(vehicle, layout, w, n);
+    const float limit = n > 1 ? w[1].a : 0.0F;
+    bound_waypoints(w, n);
+    bound_by_most(vehicle, start, w, n);
+    w[0].v = aisle_float_below(start->v);
+    bound_accelerations(vehicle, w, n);
+    return limit;
+}
+
+static aisle_status finish(const aisle_vehicle *vehicle, aisle_waypoint_msg *w, uint32_t n, const float *dwell,
+                           float limit, aisle_profile_sum *sum) {
+    const bool is_fit = fit_start(vehicle, w, n, limit);
+    const aisle_status st = lay_out(vehicle, w, n, dwell, sum);
+    return st == AISLE_OK && !is_fit ? AISLE_PARTIAL : st;
+}
+
 aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                 uint32_t n, const float *dwell, aisle_profile_sum *sum) {
     static const aisle_profile_start at_rest = {0.0, NULL};
@@ -342,19 +471,22 @@ aisle_status aisle_profile_fill(const aisle_vehicle *vehicle, const aisle_layout
 aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                        uint32_t n, const float *dwell, const aisle_profile_start *start,
                                        aisle_profile_sum *sum) {
-    if (vehicle == NULL || w == NULL || start == NULL || sum == NULL || n == 0 || !path_is_fit(w, n, dwell) ||
-        !start_is_fit(w, n, dwell, start) || (layout != NULL && !aisle_layout_is_in_force(layout))) {
+    if (sum == NULL || !is_fit_to_fill(vehicle, layout, w, n, dwell, start)) {
         return AISLE_ERR_ARG;
     }
-    AISLE_ASSERT(vehicle->v_max > 0.0 && vehicle->v_reverse_max > 0.0 && vehicle->creep_speed > 0.0);
-    AISLE_ASSERT(vehicle->a_max > 0.0 && vehicle->d_max > 0.0 && vehicle->omega_max > 0.0 && vehicle->alpha_max > 0.0);
-    bound_pieces(vehicle, layout, w, n);
-    const float limit = n > 1 ? w[1].a : 0.0F; // before most
-    bound_waypoints(w, n);
-    bound_by_most(vehicle, start, w, n);
-    w[0].v = aisle_float_below(start->v);
-    bound_accelerations(vehicle, w, n);
-    const bool is_fit = fit_start(vehicle, w, n, limit);
-    const aisle_status st = lay_out(vehicle, w, n, dwell, sum);
-    return st == AISLE_OK && !is_fit ? AISLE_PARTIAL : st;
+    const float limit = bound_speeds(vehicle, layout, start, w, n);
+    return finish(vehicle, w, n, dwell, limit, sum);
+}
+
+aisle_status aisle_profile_fill_ramps(const aisle_vehicle *vehicle, const aisle_layout *layout,
+                                      aisle_profile_path *path, const aisle_profile_start *start,
+                                      aisle_profile_sum *sum) {
+    if (path == NULL || sum == NULL || path->capacity < path->n ||
+        !is_fit_to_fill(vehicle, layout, path->w, path->n, path->dwell, start)) {
+        return AISLE_ERR_ARG;
+    }
+    const float limit = bound_speeds(vehicle, layout, start, path->w, path->n);
+    put_ramps(vehicle, start, path);
+    bound_accelerations(vehicle, path->w, path->n);
+    return finish(vehicle, path->w, path->n, path->dwell, limit, sum);
 }

@@ -19,8 +19,8 @@
 //     a = (v1^2 - v0^2) / (2 L),  dt = 2 L / (v0 + v1).
 // Waypoint i holds v at it and a of the piece that ends there (0 at the first).
 // A piece at rest at both ends is driven as a trapezoid (triangle) under its limit with a_max and d_max; it is written
-// as v = 0 at both ends and a = 0, dt the duration of the trapezoid. A long piece with one slow end is driven at the
-// mean of both speeds: who wants it faster splits it. Turn on the spot by angle b: trapezoid (triangle) under omega_max
+// as v = 0 at both ends and a = 0, dt the duration of the trapezoid. Any other piece is driven at the mean of the speeds at
+// its ends, a long one with a slow end slowly: aisle_profile_fill_ramps() cuts it. Turn on the spot by angle b: trapezoid (triangle) under omega_max
 // and alpha_max, v = 0 at both ends, a = 0. alpha_max is not asked elsewhere: arcs meet lines with a jump of curvature,
 // as all line-and-arc paths do.
 //
@@ -46,6 +46,7 @@
 #define AISLE_PROFILE_DURATION_MAX 16384.0 // s (4.5 h): float tells milliseconds apart up to here
 #define AISLE_PROFILE_PIECE_MIN 1e-9       // m; a shorter piece is none
 #define AISLE_PROFILE_TIME_STEP 1e-3       // s, least time between waypoints
+#define AISLE_PROFILE_RAMP_GAIN 0.02       // s, that a piece is cut for
 
 typedef struct aisle_profile_sum {
     double length;   // m
@@ -86,6 +87,25 @@ typedef struct aisle_profile_start {
 aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                        uint32_t n, const float *dwell, const aisle_profile_start *start,
                                        aisle_profile_sum *sum);
+
+// A path that waypoints may be put into.
+typedef struct aisle_profile_path {
+    aisle_waypoint_msg *w; // [capacity]
+    float *dwell;          // [capacity] s; NULL: none
+    uint32_t n, capacity;
+    uint32_t mark;  // of a waypoint that the caller wants to find again: moves with it
+    uint32_t whole; // pieces, the first ones, that are not to be cut
+} aisle_profile_path;
+
+// The same again, as fast as the limits of whole pieces allow. A piece that would take more than AISLE_PROFILE_RAMP_GAIN
+// less if it sped up with a_max to its limit, or to where it has to brake, and braked with d_max, is cut there: into up to
+// three parts. Waypoints put in are on the piece, with its curvature, clearance and REVERSE, no dwell and no other flag.
+// Pieces from rest to rest, turns, the first path->whole pieces and those on which `most` falls or rises to a finite
+// bound are left whole; so are those behind the first one for which there is no room. The first speed and those of the waypoints there were are the same, but
+// for rounding. start->most: [n], of the path as it comes. Beside the answers above AISLE_ERR_ARG: capacity < n.
+aisle_status aisle_profile_fill_ramps(const aisle_vehicle *vehicle, const aisle_layout *layout,
+                                      aisle_profile_path *path, const aisle_profile_start *start,
+                                      aisle_profile_sum *sum);
 
 // Length (m) of the line or the minor arc from `from` to `to`, 0 if `from` carries TURN_IN_PLACE. A chord longer than
 // the diameter is taken as the diameter. Relative error at most 1e-12. O(1).

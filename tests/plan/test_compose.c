@@ -282,6 +282,10 @@ static void test_pieces_are_slow_just_where_the_body_is_too_near_for_every_objec
                 const aisle_waypoint_msg *w = &path.waypoints[i];
                 bool creeps = (double)w->clearance < hall_vehicle.creep_clearance;
                 double gap = sampled_gap(w);
+                while (i + 1 < path.num_waypoints && !(w[1].clearance != w->clearance)) { // cut for its speeds' sake
+                    gap = fmin(gap, sampled_gap(++w));
+                    i++;
+                }
                 TEST_ASSERT_TRUE(creeps ? gap < hall_vehicle.creep_clearance + 7e-3
                                         : gap >= hall_vehicle.creep_clearance - 1e-6);
                 slow += creeps;
@@ -289,8 +293,8 @@ static void test_pieces_are_slow_just_where_the_body_is_too_near_for_every_objec
             }
         }
     }
-    TEST_ASSERT_GREATER_THAN_INT(100, slow);
-    TEST_ASSERT_GREATER_THAN_INT(100, fast);
+    TEST_ASSERT_GREATER_THAN_INT(60, slow);
+    TEST_ASSERT_GREATER_THAN_INT(60, fast);
 }
 
 static void test_a_disc_rounds_a_corner_as_wide_as_its_legs_are_free(void) {

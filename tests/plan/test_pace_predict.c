@@ -62,12 +62,21 @@ static aisle_status run(const aisle_pace_predict_request *request) {
 
 // ---- without movers: the path's own time
 
+// As plans are: with ramps.
+static void put_ramps(void) {
+    aisle_profile_path way = {.w = path, .dwell = dwell, .n = count, .capacity = CAPACITY};
+    static const aisle_profile_start at_rest = {0.0, NULL};
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill_ramps(&vehicle, NULL, &way, &at_rest, &way_sum));
+    count = way.n;
+}
+
 static void test_unhindered_it_takes_as_long_as_the_path_says(void) {
     for (uint64_t seed = 0; seed < 200; seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         setUp();
         some_vehicle(seed);
         random_way(seed, 12, true);
+        put_ramps();
         const aisle_place at = random_place(&rng);
         const double v = aisle_motion_speed(&vehicle, path, count, dwell, at);
         aisle_pace_predict_request request = request_from(at, v);
@@ -87,7 +96,7 @@ static void test_rest_on_the_way_is_no_standing_however_long(void) {
     add_line(6.0, 1.0);
     set_flag(&path[3], AISLE_WAYPOINT_STOP | AISLE_WAYPOINT_GOAL);
     dwell[3] = 100.0F;
-    fill_way();
+    put_ramps();
     const aisle_pace_predict_request request = request_from((aisle_place){1, 0.0}, 0.0);
     TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request));
     TEST_ASSERT_DOUBLE_WITHIN(0.05, (double)path[count - 1].t, predict.seconds);
@@ -300,7 +309,7 @@ static void test_a_way_of_hours_ends_with_its_own_time(void) {
     set_vehicle(&slow);
     (void)add(0.0, 0.0, 0.0);
     add_line(100.0, 0.5); // 2000 s
-    fill_way();
+    put_ramps();
     const aisle_pace_predict_request request = request_from((aisle_place){1, 0.0}, 0.0);
     TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request));
     TEST_ASSERT_DOUBLE_WITHIN(1.0, (double)path[count - 1].t, predict.seconds);

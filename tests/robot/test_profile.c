@@ -335,6 +335,160 @@ static void test_at_rest_and_unbounded_it_is_the_plain_fill(void) {
     }
 }
 
+// ---- with ramps
+
+// path as it was, its `count`; then with ramps: count is theirs.
+static aisle_waypoint_msg whole[CAPACITY];
+static uint32_t whole_count;
+
+static aisle_status fill_ramps(uint32_t capacity) {
+    memcpy(whole, path, sizeof whole);
+    whole_count = count;
+    aisle_profile_path way = {path, dwell, count, capacity, 0, 0};
+    const aisle_status st = aisle_profile_fill_ramps(&vehicle, NULL, &way, &begin, &sum);
+    count = way.n;
+    return st;
+}
+
+// s of a piece, its ends' speeds and limit as they are, if it is driven as fast as can be; at rest at both ends, too.
+static long double judge_fastest(uint32_t i) {
+    const long double v0 = lf(path[i - 1].v), v1 = lf(path[i].v), up = ld(vehicle.a_max), down = ld(vehicle.d_max);
+    const long double limit = judge_bounded(i), length = judge_length(i);
+    long double lo = fmaxl(v0, v1), hi = limit; // the peak, by bisection of the way it takes
+    if (hi <= lo) {
+        return 2.0L * length / (v0 + v1);
+    }
+    for (int k = 0; k < 200; k++) {
+        const long double peak = 0.5L * (lo + hi);
+        const long double ways = (peak * peak - v0 * v0) / (2.0L * up) + (peak * peak - v1 * v1) / (2.0L * down);
+        *(ways <= length ? &lo : &hi) = peak;
+    }
+    const long double ways = (lo * lo - v0 * v0) / (2.0L * up) + (lo * lo - v1 * v1) / (2.0L * down);
+    return (lo - v0) / up + (lo - v1) / down + fmaxl(length - ways, 0.0L) / lo;
+}
+
+// Every waypoint there was is there yet, with its speed by `plain`, in this order; what is new is on its piece. Gives every new one
+// a bound for the judge. most: of the path as it was.
+static void judge_kept(const aisle_waypoint_msg *plain, const float *bounds) {
+    uint32_t old = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const aisle_waypoint_msg *w = &whole[old];
+        const bool same = !(path[i].x != w->x) && !(path[i].y != w->y) && !(path[i].theta != w->theta) &&
+                          path[i].flags == w->flags && path[i].goal_id == w->goal_id;
+        if (same && (old == 0 || !(path[i].curvature != w->curvature || path[i].clearance != w->clearance))) {
+            TEST_ASSERT_FLOAT_WITHIN(2e-6F * plain[old].v, plain[old].v, path[i].v);
+            most[i] = bounds[old++];
+            continue;
+        }
+        const double before = hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y);
+        TEST_ASSERT_TRUE(before > 0.9e-4 && !(dwell[i] > 0.0F)); // a new one
+        TEST_ASSERT_FALSE(path[i].curvature != w->curvature || path[i].clearance != w->clearance);
+        TEST_ASSERT_EQUAL_INT(w->flags & AISLE_WAYPOINT_REVERSE, path[i].flags);
+        most[i] = bounds[old];
+    }
+    TEST_ASSERT_EQUAL_UINT32(whole_count, old);
+}
+
+static void test_with_ramps_every_rule_holds_and_no_piece_could_be_driven_faster_for_400_of_400(void) {
+    static aisle_waypoint_msg plain[CAPACITY];
+    static float bounds[CAPACITY], rests[CAPACITY];
+    uint32_t more = 0;
+    for (uint64_t seed = 0; seed < 400; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed + 2000U);
+        (void)cut_random_path(seed);
+        count = count < 300 ? count : 300;
+        dwell[count - 1] = 0.0F;
+        float bound = (float)vehicle.v_max;
+        for (uint32_t i = 0; i < count; i++) {
+            bound = aisle_rng_below(&rng, 10) == 0 ? (float)uniform(&rng, 0.05, 1.2 * vehicle.v_max) : bound;
+            bounds[i] = most[i] = i > count / 2 ? INFINITY : bound;
+        }
+        begin.most = seed % 4 != 0 ? most : NULL;
+        memcpy(rests, dwell, sizeof rests);
+        const aisle_status st = fill_moving();
+        memcpy(plain, path, sizeof plain);
+        const double duration = sum.duration;
+        TEST_ASSERT_EQUAL_INT(st, fill_ramps(CAPACITY));
+        judge_kept(plain, bounds);
+        (void)judge_path();
+        TEST_ASSERT_TRUE(sum.duration <= duration + 1e-3);
+        for (uint32_t i = 1; i < count; i++) {
+            const long double dt = lf(path[i].t) - lf(path[i - 1].t) - lf(dwell[i - 1]);
+            const bool even = begin.most == NULL || !(most[i - 1] != most[i]) || isinf(most[i]);
+            if (!turning(i) && even) {
+                TEST_ASSERT_TRUE(dt <= judge_fastest(i) + 1.1L * (long double)AISLE_PROFILE_RAMP_GAIN);
+            }
+        }
+        more += count - whole_count;
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(2000, more);
+}
+
+static void test_a_line_from_a_start_in_motion_gets_both_its_ramps(void) {
+    (void)add(0.0, 0.0, 0.0);
+    add_line(10.0, 10.0);
+    begin.v = 0.5;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_ramps(CAPACITY)); // 0.5 to 1.5 m/s at 0.5 m/s2: 2 m; back to 0: 2.25 m
+    TEST_ASSERT_EQUAL_UINT32(4, count);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, path[1].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 7.75, path[2].x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 + 5.75 / 1.5 + 3.0, sum.duration);
+}
+
+static void test_without_room_for_ramps_it_is_the_plain_fill_and_the_first_pieces_get_what_there_is(void) {
+    static aisle_waypoint_msg plain[CAPACITY];
+    (void)add(0.0, 0.0, 0.0);
+    for (int i = 0; i < 3; i++) {
+        add_line(8.0, 4.0);
+        set_flag(&path[count - 1], AISLE_WAYPOINT_STOP);
+    }
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+    memcpy(plain, path, sizeof plain);
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_ramps(count));
+    TEST_ASSERT_EQUAL_MEMORY(plain, path, sizeof plain);
+    const double slow = sum.duration;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_ramps(9)); // of six pieces with a waypoint each, two
+    TEST_ASSERT_EQUAL_UINT32(9, count);
+    (void)judge_path();
+    const double gain = 4.0 / 0.75 - (1.5 / 0.5 + 1.75 / 1.5); // of each ramp
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, slow - 2.0 * gain, sum.duration);
+    count--;
+    aisle_profile_path none = {path, dwell, count, count - 1, 0, 0};
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill_ramps(&vehicle, NULL, &none, &begin, &sum));
+    TEST_ASSERT_EQUAL_INT(AISLE_ERR_ARG, aisle_profile_fill_ramps(&vehicle, NULL, NULL, &begin, &sum));
+}
+
+static void test_a_waypoint_is_found_again_behind_the_ramps_put_before_it(void) {
+    for (uint32_t mark = 0; mark < 7; mark++) {
+        setUp();
+        (void)add(0.0, 0.0, 0.0);
+        for (int i = 0; i < 3; i++) {
+            add_line(8.0, 4.0);
+            set_flag(&path[count - 1], AISLE_WAYPOINT_STOP);
+        }
+        aisle_profile_path way = {path, NULL, count, CAPACITY, mark, 0};
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill_ramps(&vehicle, NULL, &way, &begin, &sum));
+        TEST_ASSERT_EQUAL_UINT32(13, way.n);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0 * mark, path[way.mark].x);
+    }
+}
+
+static void test_the_first_pieces_are_left_whole_if_they_are_to_be(void) {
+    static aisle_waypoint_msg plain[CAPACITY];
+    (void)add(0.0, 0.0, 0.0);
+    add_line(8.0, 4.0);
+    begin.v = 0.3;
+    TEST_ASSERT_EQUAL_INT(AISLE_OK, fill_moving());
+    memcpy(plain, path, sizeof plain);
+    for (uint32_t first = 0; first < 3; first++) {
+        memcpy(path, plain, sizeof plain);
+        aisle_profile_path way = {path, dwell, count, CAPACITY, 0, first};
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, aisle_profile_fill_ramps(&vehicle, NULL, &way, &begin, &sum));
+        TEST_ASSERT_EQUAL_UINT32(5 - first, way.n); // each wants one
+        TEST_ASSERT_EQUAL_MEMORY(&plain[first], &path[first], sizeof plain[0]);
+    }
+}
+
 static void test_bounds_slow_the_first_metres_alone(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(10.0, 0.25);
@@ -1180,6 +1334,11 @@ int main(void) {
     RUN_TEST(test_every_rule_holds_of_paths_under_way_for_400_of_400);
     RUN_TEST(test_unbounded_a_path_goes_on_with_the_speeds_it_had);
     RUN_TEST(test_at_rest_and_unbounded_it_is_the_plain_fill);
+    RUN_TEST(test_with_ramps_every_rule_holds_and_no_piece_could_be_driven_faster_for_400_of_400);
+    RUN_TEST(test_a_line_from_a_start_in_motion_gets_both_its_ramps);
+    RUN_TEST(test_without_room_for_ramps_it_is_the_plain_fill_and_the_first_pieces_get_what_there_is);
+    RUN_TEST(test_a_waypoint_is_found_again_behind_the_ramps_put_before_it);
+    RUN_TEST(test_the_first_pieces_are_left_whole_if_they_are_to_be);
     RUN_TEST(test_bounds_slow_the_first_metres_alone);
     RUN_TEST(test_a_start_too_fast_for_what_follows_is_told_and_begins_as_fast_as_brakes_allow);
     RUN_TEST(test_a_start_that_makes_no_sense_is_refused_and_changes_nothing);

@@ -304,7 +304,7 @@ def tell_failure(outcome: Outcome, failures: list) -> None:
         what.append("there, but the planner does not say so")
     if not outcome.arrived:
         ways = "; ".join(f"{p['status']}/{p['cause']} {p['count']}" for p in sim["paths"])
-        what.append(f"not arrived, {sim['visited']} of {sim['goals']} goals, oracle: {outcome.known.verdict}; {ways}")
+        what.append(f"not arrived, {sim['visited']} of {sim['goals']} goals, oracle: {outcome.known.verdict}, wary: {outcome.wary.verdict}; {ways}")
     if what:
         drive = outcome.drive
         line = f"{drive.name}: {', '.join(what)} ({drive.vehicle}, {drive.movers_option}, {sim['seconds']:.0f} s)"
