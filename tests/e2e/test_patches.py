@@ -22,7 +22,7 @@ def factory(data):
 def load(daemon, world, revision, factory):
     for name, msg in layouts.make_messages(world, 1, revision, 0):
         daemon.bus.publish(name, msg)
-    assert daemon.wait(lambda: daemon.status.map_revision == revision)
+    assert daemon.wait(lambda: daemon.status.map_revision == revision and daemon.counter(LAYOUTS) > 0)
     daemon.aisle("vehicle", "--scenario", factory)
 
 
