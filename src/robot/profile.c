@@ -13,7 +13,7 @@
 #define CUTS_MAX 64.0
 #define START_TOLERANCE 1e-6 // relative
 #define TOUCH 1e-6           // m, more than all rounding of places and gaps together
-#define RAMP_LEAST 1e-4      // m, of a part of a piece
+#define RAMP_LEAST 5e-6      // m, of a part of a piece
 #define TOUCH_BENT 2e-3      // m, the same where the body turns or bends: more than the verifier's own overreach
 
 typedef struct piece { // between two waypoints

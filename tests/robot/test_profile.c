@@ -381,7 +381,7 @@ static void judge_kept(const aisle_waypoint_msg *plain, const float *bounds) {
             continue;
         }
         const double before = hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y);
-        TEST_ASSERT_TRUE(before > 0.9e-4 && !(dwell[i] > 0.0F)); // a new one
+        TEST_ASSERT_TRUE(before > 4.9e-6 && !(dwell[i] > 0.0F)); // a new one
         TEST_ASSERT_FALSE(path[i].curvature != w->curvature || path[i].clearance != w->clearance);
         TEST_ASSERT_EQUAL_INT(w->flags & AISLE_WAYPOINT_REVERSE, path[i].flags);
         most[i] = bounds[old];
