@@ -74,10 +74,13 @@ void aisle_planner_send(aisle_planner *self) {
 
 void aisle_planner_withdraw(aisle_planner *self, const aisle_refusal *why) {
     aisle_mission *mission = &self->mission;
-    const bool is_told = self->withdrawn.cause == why->cause && self->withdrawn.id == why->id;
-    if (self->drive.has_out || !is_told) {
-        self->drive.has_out = false;
-        self->withdrawn = *why;
+    // Of those that it yields to, now one is named and now another: status_t tells that.
+    const bool is_told =
+        self->withdrawn.cause == why->cause && (self->withdrawn.id == why->id || why->cause == AISLE_STATUS_YIELDING);
+    const bool is_news = self->drive.has_out || !is_told;
+    self->drive.has_out = false;
+    self->withdrawn = *why;
+    if (is_news) {
         aisle_planner_refuse(self, &mission->request, why, NULL, 0, 0);
     }
 }

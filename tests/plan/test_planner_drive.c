@@ -99,6 +99,12 @@ static void tick(void) {
     take_path();
 }
 
+static void ticks(int n) {
+    for (int i = 0; i < n; i++) {
+        tick();
+    }
+}
+
 static bool has_arrived(double x, double y) {
     return hypot(here.x - x, here.y - y) < 0.05 && here.vx < 0.01F && status_now().state == AISLE_STATUS_IDLE;
 }
@@ -169,6 +175,28 @@ static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
     TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 600) > 0);
 }
 
+static void test_at_rest_it_is_told_once_that_it_yields_whoever_is_nearest(void) {
+    setup_hall(20.0, 3.0);
+    open_hall(2.0, 1.5, 0.0);
+    see(7, 3.2, 1.2, 0.0, 0.0);
+    see(8, 3.4, 1.8, 0.0, 0.0);
+    tick();
+    go(1, 18.0, 1.5);
+    tick();
+    TEST_ASSERT_EQUAL(AISLE_PATH_NONE, door_path.status);
+    const int paths = door_paths;
+    int named[2] = {0, 0};
+    for (int i = 0; i < 40; i++) {
+        see(7, i % 4 < 2 ? 3.2 : 12.0, 1.2, 0.0, 0.0);
+        see(8, i % 4 < 2 ? 12.0 : 3.2, 1.8, 0.0, 0.0);
+        tick();
+        TEST_ASSERT_TRUE(status_now().cause_id == 7 || status_now().cause_id == 8);
+        named[status_now().cause_id - 7]++;
+    }
+    TEST_ASSERT_TRUE(named[0] > 10 && named[1] > 10);
+    TEST_ASSERT_EQUAL_INT(paths, door_paths);
+}
+
 static void test_a_way_round_that_is_none_is_looked_for_ever_more_rarely(void) {
     setup_hall(20.0, 3.0);
     open_hall(2.0, 1.5, 0.0);
@@ -230,12 +258,6 @@ static void test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one(voi
     }
     TEST_ASSERT_GREATER_THAN_INT(0, arrived);
     TEST_ASSERT_TRUE(highest > 10.0);
-}
-
-static void ticks(int n) {
-    for (int i = 0; i < n; i++) {
-        tick();
-    }
 }
 
 // To a goal half way, to stay there for 8 s, and on.
@@ -571,6 +593,7 @@ int main(void) {
     RUN_TEST(test_a_vehicle_alone_follows_one_path_to_its_goal);
     RUN_TEST(test_a_person_far_away_changes_nothing);
     RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
+    RUN_TEST(test_at_rest_it_is_told_once_that_it_yields_whoever_is_nearest);
     RUN_TEST(test_a_way_round_that_is_none_is_looked_for_ever_more_rarely);
     RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
     RUN_TEST(test_one_that_dwells_has_no_path_by_which_it_must_not_leave_at_once);
