@@ -11,6 +11,7 @@
 #define TOLERANCE 0.05 // m and rad, where a goal names none
 #define RESTING 0.01   // m/s and rad/s: slower is at rest
 #define LEVER 0.5      // m, that a radian of heading counts
+#define GONE 0.008     // m farther off than it was, more than a pose's noise
 
 // ---- lists
 
@@ -320,7 +321,8 @@ static double tolerance_of(float told) {
 }
 
 typedef struct arrival { // a pose by a goal
-    double off;          // from it, heading included where that matters
+    double off;          // m from it, heading included where that matters
+    double speed;        // m/s, turning included
     bool is_within;      // its tolerances
     bool rests;          // on it
     bool stops;          // over it: no faster than who brakes to rest on it may be so near
@@ -340,6 +342,7 @@ static arrival look(const aisle_vehicle *vehicle, const aisle_pose_msg *pose, co
     const double turned = is_free ? 0.0 : fabs(aisle_angle_difference(pose->theta, goal->theta));
     const bool is_within = away <= xy && turned <= theta;
     return (arrival){.off = away + LEVER * turned,
+                     .speed = speed + LEVER * rate,
                      .is_within = is_within,
                      .rests = is_within && speed < RESTING && rate < RESTING,
                      .stops = is_within && speed <= aisle_max(braking(vehicle->d_max, xy), RESTING) &&
@@ -362,7 +365,7 @@ static void reach(aisle_mission *self) {
 // Does it leave a goal on which it may have stayed for its dwell, if poses and brakes are given the benefit of the doubt?
 static bool leaves(const aisle_goal_rest *rest, const arrival *it, const aisle_goal_msg *goal, int64_t now_us) {
     const bool has_stayed = rest->is_sure && (float)seconds(rest->from_us, now_us) >= goal->dwell;
-    const bool goes_off = goal->dwell <= 0.0F && it->off > rest->off;
+    const bool goes_off = goal->dwell <= 0.0F && it->off > rest->nearest + GONE && it->speed >= rest->slowest;
     return rest->stops && !it->rests && (has_stayed || goes_off);
 }
 
@@ -372,12 +375,13 @@ static void go_on_resting(aisle_goal_rest *rest, const arrival *it, int64_t befo
         *rest = (aisle_goal_rest){.is_on = false};
         return;
     }
+    rest->nearest = rest->stops ? aisle_min(rest->nearest, it->off) : it->off;
+    rest->slowest = rest->stops ? aisle_min(rest->slowest, it->speed) : it->speed;
     rest->from_us = rest->stops ? rest->from_us : before_us;
     rest->since_us = rest->is_on ? rest->since_us : now_us;
     rest->stops = true;
     rest->is_on = it->rests;
     rest->is_sure = rest->is_sure || it->rests;
-    rest->off = it->off;
 }
 
 // Is the goal being driven to reached by this pose?

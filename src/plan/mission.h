@@ -22,7 +22,8 @@
 // the tolerances and no faster than one may be there that brakes to rest on it: sqrt(2 d_max tolerance_xy), and
 // sqrt(2 alpha_max tolerance_theta) if a heading is given. The goal counts, too, when the vehicle has rested on it by one
 // pose and moves again by another, if from the pose before the first one that stops over it until now its dwell went by;
-// and one without dwell when two poses show it stopping over the goal and then farther off.
+// and one without dwell when poses show it stopping over the goal, then at least 8 mm farther off and no slower than it was:
+// one that still brakes has not left.
 //     Of several goals within reach of one place each has its dwell in turn. A goal that is reached stays reached, whatever
 // becomes of path, layout or vehicle.
 //     The goal being driven to (status_t.goal_id) is the first one left. An ordered list is driven as it came. One in any
@@ -57,7 +58,7 @@ typedef struct aisle_goal_rest { // on the goal being driven to, by an unbroken 
     bool stops;                  // it stops over it, and may have rested on it
     int64_t from_us;             // since then
     bool is_sure;                // it did rest on it meanwhile
-    double off;                  // m, how far it was from it
+    double nearest, slowest;     // m, m/s, least of the row
 } aisle_goal_rest;
 
 typedef struct aisle_mission {

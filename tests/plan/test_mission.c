@@ -397,6 +397,21 @@ static void test_coming_near_is_not_reaching_yet(void) {
     TEST_ASSERT_EQUAL_UINT32(1, stand(3.02, 0.0));
 }
 
+// Noise of the pose must not take a goal from a vehicle that is about to rest on it.
+static void test_who_brakes_still_has_not_left_whatever_its_poses_noise(void) {
+    fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
+    take_and_plan();
+    static const float speed[] = {0.18F, 0.15F, 0.12F, 0.10F, 0.06F};
+    static const double place[] = {2.970, 2.981, 2.992, 2.978, 3.015};
+    for (int i = 0; i < 5; i++) {
+        pose.vx = speed[i];
+        TEST_ASSERT_EQUAL_UINT32(0, stand(place[i], 0.0));
+    }
+    pose.vx = 0.09F; // up again, but where it was
+    TEST_ASSERT_EQUAL_UINT32(0, stand(3.007, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(1, stand(3.016, 0.0));
+}
+
 static void test_only_poses_in_a_row_show_that_it_stopped(void) {
     for (int how = 0; how < 3; how++) {
         fill(1, AISLE_GOAL_LIST_ORDERED, IDS(3, 4));
@@ -1564,6 +1579,7 @@ int main(void) {
     RUN_TEST(test_goals_reached_are_kept_in_their_order_of_reaching);
     RUN_TEST(test_whoever_stopped_over_a_goal_and_goes_on_has_reached_it);
     RUN_TEST(test_coming_near_is_not_reaching_yet);
+    RUN_TEST(test_who_brakes_still_has_not_left_whatever_its_poses_noise);
     RUN_TEST(test_only_poses_in_a_row_show_that_it_stopped);
     RUN_TEST(test_the_last_goal_and_one_with_dwell_want_a_rest);
     RUN_TEST(test_whoever_leaves_before_the_dwell_can_be_over_has_not_reached_the_goal);
