@@ -481,14 +481,9 @@ static aisle_waypoint_msg first_at(const aisle_waypoint_msg *w, uint32_t n, uint
 }
 
 static aisle_waypoint_msg between(const leg *it, double u, double v) {
-    const aisle_pose2 p = aisle_piece_at(it->from, it->to, u);
-    return (aisle_waypoint_msg){.x = p.x,
-                                .y = p.y,
-                                .theta = aisle_angle_wrap(p.theta),
-                                .curvature = it->to->curvature,
-                                .clearance = it->to->clearance,
-                                .v = aisle_float_below(v),
-                                .flags = reverse_of(it->to)};
+    aisle_waypoint_msg part = aisle_piece_part(it->to, u);
+    part.v = aisle_float_below(v);
+    return part;
 }
 
 // Appends the end of a part of a trapezoid, `length` m behind the last waypoint.
