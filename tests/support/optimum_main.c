@@ -11,7 +11,9 @@
 // and then
 //   upper L                         a length known to suffice for the next query only
 //   query START_X START_Y GOAL_X GOAL_Y
-// Prints {"arcs": N, "queries": [{"result": "found" | "none" | "end occupied", "length": L or null, "tangents": N,
+// and for another scene
+//   done                            and begin anew
+// Prints for each scene {"arcs": N, "queries": [{"result": "found" | "none" | "end occupied", "length": L or null, "tangents": N,
 // "steps": [[x, y, curvature of the piece that ends here], ...]}, ...]}. Exit 2 with a line if the scene is not right.
 #include "optimum.h"
 
@@ -138,8 +140,25 @@ static void answer(scene *s) {
     s->upper = INFINITY;
 }
 
+static void begin(scene *s) {
+    *s = (scene){.radius = -1.0, .upper = INFINITY};
+}
+
+static void end(scene *s) {
+    printf("%s\n]}\n", s->queries > 0 ? "" : "{\"arcs\": 0, \"queries\": [");
+    (void)fflush(stdout);
+    optimum_free(s->world);
+    for (size_t i = 0; i < s->count; i++) {
+        free((void *)(uintptr_t)s->polygons[i].points);
+    }
+    free(s->polygons);
+}
+
 static void obey(scene *s, const char *word) {
-    if (strcmp(word, "radius") == 0) {
+    if (strcmp(word, "done") == 0) {
+        end(s);
+        begin(s);
+    } else if (strcmp(word, "radius") == 0) {
         s->radius = number();
     } else if (strcmp(word, "bounds") == 0) {
         for (int i = 0; i < 4; i++) {
@@ -154,24 +173,23 @@ static void obey(scene *s, const char *word) {
     } else if (strcmp(word, "query") == 0) {
         answer(s);
     } else {
-        fail("radius, bounds, polygon, grid, upper or query is expected");
+        fail("radius, bounds, polygon, grid, upper, query or done is expected");
     }
 }
 
 int main(void) {
-    scene s = {.radius = -1.0, .upper = INFINITY};
+    scene s;
+    begin(&s);
     char word[16];
     while (scanf("%15s", word) == 1) {
+        const int is_done = strcmp(word, "done") == 0;
         obey(&s, word);
-        if (s.radius != 0.0 && !(s.radius >= 1e-6)) {
+        if (!is_done && s.radius != 0.0 && !(s.radius >= 1e-6)) {
             fail("radius comes first and is 0 or at least 1e-6");
         }
     }
-    printf("%s\n]}\n", s.queries > 0 ? "" : "{\"arcs\": 0, \"queries\": [");
-    optimum_free(s.world);
-    for (size_t i = 0; i < s.count; i++) {
-        free((void *)(uintptr_t)s.polygons[i].points);
+    if (s.radius >= 0.0) {
+        end(&s);
     }
-    free(s.polygons);
     return 0;
 }

@@ -24,7 +24,7 @@ LEAST_RADIUS = 0.001  # m
 GAP_TOLERANCE = 1e-7  # m
 
 
-def is_open(program: Path, data: dict, leg: int, radius: float, without: tuple = ()) -> bool:
+def is_open(oracle: exact.Oracle, data: dict, leg: int, radius: float, without: tuple = ()) -> bool:
     """Bounds are those of the centre for the scenario's own radius: walls that stay for others."""
     shift = radius - float(data["robot"]["radius"])
     x0, y0, x1, y1 = data["bounds"]
@@ -35,37 +35,37 @@ def is_open(program: Path, data: dict, leg: int, radius: float, without: tuple =
         "start": stops[leg],
         "goals": [stops[leg + 1]],
     }
-    return exact.ask(program, exact.scenario_scene(changed, radius))["queries"][0]["result"] == "found"
+    return oracle.ask(exact.scenario_scene(changed, radius))["queries"][0]["result"] == "found"
 
 
-def gap(program: Path, data: dict, leg: int) -> float | None:
+def gap(oracle: exact.Oracle, data: dict, leg: int) -> float | None:
     low, high = LEAST_RADIUS, float(data["robot"]["radius"])
-    if not is_open(program, data, leg, low):
+    if not is_open(oracle, data, leg, low):
         return None
     while high - low > 0.25 * GAP_TOLERANCE:
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if is_open(program, data, leg, middle) else (low, middle)
+        low, high = (middle, high) if is_open(oracle, data, leg, middle) else (low, middle)
     return round(2.0 * low, 7)
 
 
-def openers(program: Path, data: dict, leg: int) -> list[list[int]]:
+def openers(oracle: exact.Oracle, data: dict, leg: int) -> list[list[int]]:
     radius = float(data["robot"]["radius"])
     for size in (1, 2):
         sets = itertools.combinations(range(len(data["obstacles"])), size)
-        found = [[i + 1 for i in s] for s in sets if is_open(program, data, leg, radius, s)]
+        found = [[i + 1 for i in s] for s in sets if is_open(oracle, data, leg, radius, s)]
         if found:
             return found
     return []
 
 
-def of_folder(folder: Path, program: Path) -> dict:
+def of_folder(folder: Path, oracle: exact.Oracle) -> dict:
     made = {}
     for name, optimum in json.loads((folder / "optimum.json").read_text()).items():
         data = json.loads((folder / f"{name}.json").read_text())
         shut = [i for i, leg in enumerate(optimum["legs"]) if leg["lower"] is None]
         if shut:
             made[name] = [
-                {"leg": i + 1, "gap": gap(program, data, i), "openers": openers(program, data, i)} for i in shut
+                {"leg": i + 1, "gap": gap(oracle, data, i), "openers": openers(oracle, data, i)} for i in shut
             ]
             print(f"{name}: {made[name]}", file=sys.stderr)
     return made
@@ -84,7 +84,9 @@ def main() -> int:
     parser.add_argument("--check", action="store_true", help="against the folder's causes.json")
     parser.add_argument("--write", action="store_true", help="the folder's causes.json")
     args = parser.parse_args()
-    made, file = of_folder(args.folder, args.program), args.folder / "causes.json"
+    file = args.folder / "causes.json"
+    with exact.Oracle(args.program) as oracle:
+        made = of_folder(args.folder, oracle)
     if args.write:
         file.write_text("{\n" + ",\n".join(f" {json.dumps(k)}: {json.dumps(v)}" for k, v in made.items()) + "\n}\n")
     if args.check:

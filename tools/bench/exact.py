@@ -36,6 +36,30 @@ def ask(program: Path, scene: list[str], timeout: float | None = None) -> dict:
     return json.loads(done.stdout)
 
 
+class Oracle:
+    """The program kept running, for many small scenes; a context manager."""
+
+    def __init__(self, program: Path) -> None:
+        self.process = subprocess.Popen([str(program)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def __enter__(self) -> Oracle:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.stdin.close()
+        self.process.wait()
+
+    def ask(self, scene: list[str]) -> dict:
+        self.process.stdin.write("\n".join(scene) + "\ndone\n")
+        self.process.stdin.flush()
+        lines = []
+        while not lines or lines[-1] != "]}\n":
+            lines.append(self.process.stdout.readline())
+            if not lines[-1]:
+                sys.exit(f"{self.process.args[0]}: exit {self.process.wait()}")
+        return json.loads("".join(lines))
+
+
 def numbers(*values: float) -> str:
     return " ".join(repr(float(v)) for v in values)
 
