@@ -115,9 +115,11 @@ mkdir -p build/deps
 exec 9>build/deps/setup.lock # two at a time would trip over each other
 flock 9
 [ -n "${AISLE_SETUP_NO_APT:-}" ] || install_packages "${packages[@]}" "$@"
-unity_present || fetch_unity
+unity_present || fetch_unity &
+unity=$!
 stamp=$(python_stamp)
 if [ "$(cat build/venv/aisle.stamp 2>/dev/null)" != "$stamp" ] || ! build/venv/bin/python -c '' 2>/dev/null; then
     install_python
     printf '%s\n' "$stamp" >build/venv/aisle.stamp
 fi
+wait "$unity"

@@ -40,19 +40,26 @@ expect 2 "$aisled" --config "$work/none.ini" && says err 'cannot be read' && one
 expect 0 "$aisled" --memory && says out '^heap of the core after start *0$' && says out '^planner, sum'
 expect 1 "$aisled" --lcm-url "file:///none/log?mode=r" && says err 'bus cannot be joined'
 
-# A clean stop: exit 0 within 200 ms of the signal (the rest is the shell's).
-for signal in TERM INT; do
+stop() { # signal: starts and stops one; the milliseconds in $took
     "$aisled" --lcm-url memq:// >"$work/out" 2>"$work/err" &
     daemon=$!
     sleep 0.5
     before=$(date +%s%N)
-    kill -$signal $daemon
+    kill -"$1" $daemon
     wait $daemon
     got=$?
     took=$((($(date +%s%N) - before) / 1000000))
-    [ $got = 0 ] || fail "exit $got after SIG$signal"
-    [ $took -lt 200 ] || fail "stop took $took ms after SIG$signal"
+    [ $got = 0 ] || fail "exit $got after SIG$1"
     [ -s "$work/err" ] && fail "said something when stopped"
+}
+
+# A clean stop: exit 0 within 200 ms of the signal, in one of five tries where the machine is busy.
+for signal in TERM INT; do
+    for try in 1 2 3 4 5; do
+        stop $signal
+        [ $took -ge 200 ] || break
+    done
+    [ $took -lt 200 ] || fail "each stop took 200 ms or more after SIG$signal, the last one $took"
 done
 
 # Every allocation of the daemon's own is in engine.c, before the loop.

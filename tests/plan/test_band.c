@@ -1,5 +1,6 @@
 #include "plan/band.h" // first: proves that the header stands alone
 
+#include "cases.h"
 #include "driven.h"
 #include "unity.h"
 
@@ -58,7 +59,7 @@ static aisle_band_motion random_case(uint64_t seed, bool reverses) {
 
 static void test_it_tells_where_a_vehicle_may_be_moving_and_until_when_for_150_of_150_ways(void) {
     uint32_t turning = 0, places = 0;
-    for (uint64_t seed = 0; seed < 150; seed++) {
+    for (uint64_t seed = 0; seed < CASES(150); seed++) {
         static real latest[AISLE_BAND_MAX];
         const aisle_band_motion motion = random_case(seed, false);
         aisle_band_make(&band, &motion);
@@ -88,12 +89,12 @@ static void test_it_tells_where_a_vehicle_may_be_moving_and_until_when_for_150_o
             places++;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(1000, turning);
-    TEST_ASSERT_GREATER_THAN_UINT32(4000, places);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(1000), turning);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(4000), places);
 }
 
 static void test_travel_bounds_what_a_body_point_makes_between_places(void) {
-    for (uint64_t seed = 0; seed < 200; seed++) {
+    for (uint64_t seed = 0; seed < CASES(200); seed++) {
         const aisle_band_motion motion = random_case(seed, true);
         aisle_band_make(&band, &motion);
         for (uint32_t k = 1; k < band.n; k++) {
@@ -113,7 +114,7 @@ static void test_travel_bounds_what_a_body_point_makes_between_places(void) {
 
 static void test_a_disc_is_clear_only_if_it_is_off_the_body_at_all_times(void) {
     uint32_t clear = 0, not_clear = 0, near = 0;
-    for (uint64_t seed = 0; seed < 250; seed++) {
+    for (uint64_t seed = 0; seed < CASES(250); seed++) {
         aisle_rng rng = aisle_rng_seed(seed + 7000U);
         const aisle_band_motion motion = random_case(seed, true);
         aisle_band_make(&band, &motion);
@@ -140,9 +141,9 @@ static void test_a_disc_is_clear_only_if_it_is_off_the_body_at_all_times(void) {
             not_clear += is_clear ? 0U : 1U;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(500, clear);
-    TEST_ASSERT_GREATER_THAN_UINT32(500, not_clear);
-    TEST_ASSERT_GREATER_THAN_UINT32(100, near);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(500), clear);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(500), not_clear);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), near);
 }
 
 static void test_a_long_line_is_as_the_closed_form_says(void) {

@@ -1,9 +1,10 @@
 #include "plan/local.h"
 
+#include "cases.h"
 #include "hall.h"
 #include "optimum.h"
 
-enum { SEEDS = 40 };
+enum { SEEDS = CASES(40) };
 
 static aisle_space space;
 static aisle_local local;
@@ -468,7 +469,7 @@ static uint32_t drive_among_jumps(uint64_t seed) {
 
 static void test_among_blocks_that_jump_each_line_is_off_all_they_can_reach(void) {
     open_as(AISLE_SPACE_FREE_TURN);
-    for (uint64_t seed = 0; seed < 20; seed++) {
+    for (uint64_t seed = 0; seed < CASES(20); seed++) {
         TEST_ASSERT_TRUE(drive_among_jumps(seed) < 400U); // it arrives
     }
 }

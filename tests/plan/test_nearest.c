@@ -1,5 +1,6 @@
 #include "plan/nearest.h"
 
+#include "cases.h"
 #include "hall.h"
 
 // The judge walks a fine polar grid about the stop with hall.h's own gaps.
@@ -83,7 +84,7 @@ static void test_beside_a_wall_the_way_is_straight_off_it(void) {
 static void test_in_random_halls_no_nearer_place_is_found_by_brute_force(void) {
     uint32_t units = 0;
     int found = 0;
-    for (uint64_t s = 0; s < 40; s++) {
+    for (uint64_t s = 0; s < CASES(40); s++) {
         aisle_rng rng = aisle_rng_seed(s);
         hall_begin(5.0, 4.0);
         for (int i = 0; i < 7; i++) { // they overlap

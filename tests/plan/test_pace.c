@@ -1,6 +1,7 @@
 #include "plan/pace.h" // first: proves that the header stands alone
 
 #include "base/arena.h"
+#include "cases.h"
 #include "driven.h"
 #include "plan/verify.h"
 #include "plan/verify_moving.h"
@@ -128,7 +129,7 @@ static aisle_pace_request random_request(uint64_t seed, uint32_t how_many) {
 
 static void test_what_it_takes_is_safe_for_2000_of_2000_cases(void) {
     uint32_t levels[AISLE_PACE_LEVELS] = {0}, tight = 0;
-    for (uint64_t seed = 0; seed < 2000; seed++) {
+    for (uint64_t seed = 0; seed < CASES(2000); seed++) {
         const aisle_pace_request request = random_request(seed, 1 + (uint32_t)(seed % 3));
         const aisle_status st = run(&request, &out);
         TEST_ASSERT_EQUAL_INT(pace.level == AISLE_PACE_STOP ? AISLE_PARTIAL : AISLE_OK, st);
@@ -139,10 +140,10 @@ static void test_what_it_takes_is_safe_for_2000_of_2000_cases(void) {
             tight += slack < 0.3L ? 1U : 0U;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(300, levels[0]);
-    TEST_ASSERT_GREATER_THAN_UINT32(300, levels[AISLE_PACE_STOP]);
-    TEST_ASSERT_GREATER_THAN_UINT32(100, levels[1] + levels[2] + levels[3] + levels[4] + levels[5] + levels[6]);
-    TEST_ASSERT_GREATER_THAN_UINT32(100, tight);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(300), levels[0]);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(300), levels[AISLE_PACE_STOP]);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), levels[1] + levels[2] + levels[3] + levels[4] + levels[5] + levels[6]);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), tight);
 }
 
 // The fastest level that brute force finds safe.
@@ -162,7 +163,7 @@ static uint32_t brute_level(const aisle_pace_request *request, real spare) {
 
 static void test_it_takes_the_fastest_level_that_brute_force_allows(void) {
     uint32_t same = 0, cases = 0;
-    for (uint64_t seed = 5000; seed < 5300; seed++) {
+    for (uint64_t seed = 5000; seed < 5000 + CASES(300); seed++) {
         const aisle_pace_request request = random_request(seed, 2);
         (void)run(&request, &out);
         const uint32_t taken = pace.level;
@@ -218,7 +219,7 @@ static aisle_pace_request random_request_without_rests(uint64_t seed) {
 }
 
 static void test_its_paths_are_proved_at_every_level(void) {
-    for (uint64_t seed = 0; seed < 250; seed++) {
+    for (uint64_t seed = 0; seed < CASES(250); seed++) {
         aisle_pace_request request = random_request_without_rests(seed);
         for (request.first = 0; request.first < AISLE_PACE_LEVELS; request.first++) {
             (void)run(&request, &out);
@@ -263,7 +264,7 @@ static aisle_status prove_moving(const aisle_path_msg *made, double v, double le
 
 static void test_what_it_takes_is_proved_for_1500_of_1500_cases(void) {
     uint32_t taken = 0, agreed = 0, slower = 0;
-    for (uint64_t seed = 10000; seed < 11500; seed++) {
+    for (uint64_t seed = 10000; seed < 10000 + CASES(1500); seed++) {
         aisle_pace_request request = random_request(seed, 1 + (uint32_t)(seed % 3));
         memset(dwell, 0, sizeof dwell);
         fill_way();
@@ -281,8 +282,8 @@ static void test_what_it_takes_is_proved_for_1500_of_1500_cases(void) {
             agreed += prove_moving(&other, request.v, request.lease) == AISLE_ERR_DATA ? 1U : 0U;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(500, taken);
-    TEST_ASSERT_GREATER_THAN_UINT32(500, slower);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(500), taken);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(500), slower);
     TEST_ASSERT_GREATER_THAN_UINT32(slower * 9U / 10U, agreed);
 }
 
@@ -313,7 +314,7 @@ static aisle_verify_base base_at(double after, double *v, aisle_place *at) {
 
 static void test_paths_under_way_are_taken_over_on_their_base_however_the_level_changes(void) {
     uint32_t moving = 0, faster = 0;
-    for (uint64_t seed = 0; seed < 150; seed++) {
+    for (uint64_t seed = 0; seed < CASES(150); seed++) {
         aisle_rng rng = aisle_rng_seed(seed + 99U);
         aisle_pace_request request = random_request_without_rests(seed);
         request.first = aisle_rng_below(&rng, AISLE_PACE_LEVELS);
@@ -348,8 +349,8 @@ static void test_paths_under_way_are_taken_over_on_their_base_however_the_level_
         }
         request.base = NULL;
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(400, moving);
-    TEST_ASSERT_GREATER_THAN_UINT32(100, faster);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(400), moving);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), faster);
 }
 
 static void test_from_a_stop_it_gets_up_to_speed_though_each_path_keeps_the_base_of_the_one_before(void) {
@@ -516,7 +517,7 @@ static void test_a_vehicle_at_rest_beside_a_mover_stays_whatever_is_left_of_its_
 // ---- the manner of working
 
 static void test_any_slicing_gives_the_same_path_and_units(void) {
-    for (uint64_t seed = 300; seed < 330; seed++) {
+    for (uint64_t seed = 300; seed < 300 + CASES(30); seed++) {
         const aisle_pace_request request = random_request(seed, 3);
         uint32_t spent = 0, sliced = 0;
         aisle_pace_start(&pace, &request, &out);

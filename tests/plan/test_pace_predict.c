@@ -1,6 +1,7 @@
 #include "plan/pace_predict.h" // first: proves that the header stands alone
 
 #include "base/arena.h"
+#include "cases.h"
 #include "driven.h"
 #include "unity.h"
 
@@ -71,7 +72,7 @@ static void put_ramps(void) {
 }
 
 static void test_unhindered_it_takes_as_long_as_the_path_says(void) {
-    for (uint64_t seed = 0; seed < 200; seed++) {
+    for (uint64_t seed = 0; seed < CASES(200); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         setUp();
         some_vehicle(seed);
@@ -200,7 +201,7 @@ static real simulate(real x, real v, real end, real lease) {
 
 static void test_it_agrees_with_a_fine_simulation_of_crossing_movers(void) {
     uint32_t near = 0, hindered = 0, cases = 0;
-    for (uint64_t seed = 0; seed < 40; seed++) {
+    for (uint64_t seed = 0; seed < CASES(40); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         setUp();
         const aisle_vehicle_msg disc = {.footprint_radius = 0.4F};
@@ -279,7 +280,7 @@ static void test_a_mover_far_away_costs_nothing_and_one_beside_the_way_slows(voi
 // ---- the manner of working
 
 static void test_any_slicing_gives_the_same_answer_and_units_and_work_is_bounded(void) {
-    for (uint64_t seed = 0; seed < 20; seed++) {
+    for (uint64_t seed = 0; seed < CASES(20); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         setUp();
         random_way(seed, 12, true);

@@ -1,5 +1,6 @@
 // What nobody in his right mind would send, through the public door: every answer is a path that is judged clear of
 // every polygon, or a cause; and what came before it still stands.
+#include "cases.h"
 #include "door.h"
 
 enum { POLYGONS = 16 };
@@ -531,7 +532,7 @@ static aisle_goal_msg draw_stop(int32_t id) {
 static void test_random_polygons_and_stops_of_any_kind_give_right_paths_or_causes(void) {
     static const double radii[] = {1e-3, 0.05, 0.3};
     int paths = 0;
-    for (uint64_t seed = 0; seed < 120; seed++) {
+    for (uint64_t seed = 0; seed < CASES(120); seed++) {
         rng = aisle_rng_seed(seed);
         drive_disc(radii[seed % 3U], seed % 2U == 0 ? -1.0F : 0.05F);
         world(12.0, 8.0);
@@ -552,7 +553,7 @@ static void test_random_polygons_and_stops_of_any_kind_give_right_paths_or_cause
             paths += door_reply.status == AISLE_PATH_OK;
         }
     }
-    TEST_ASSERT_GREATER_THAN_INT(100, paths);
+    TEST_ASSERT_GREATER_THAN_INT(CASES(100), paths);
 }
 
 int main(void) {

@@ -5,6 +5,7 @@
 #include "aisle/planner.h"
 
 #include "base/rng.h"
+#include "cases.h"
 #include "recompute.h"
 #include "robot/profile.h"
 #include "scenario.h"
@@ -17,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static unsigned long seeds = 12;
+static unsigned long seeds = CASES(12);
 static unsigned char block[(40U << 20) + AISLE_PLANNER_ALIGN];
 static aisle_planner *planner;
 static aisle_layout_msg layout, held;

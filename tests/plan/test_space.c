@@ -1,10 +1,11 @@
 #include "plan/space.h"
 
+#include "cases.h"
 #include "hall.h"
 
 #include "robot/curve.h"
 
-enum { SEEDS = 16 };
+enum { SEEDS = CASES(16) };
 
 static aisle_space space;
 static uint32_t units;
@@ -84,7 +85,7 @@ static void sweeps_agree_with_dense_sampling(aisle_space_mode mode, int least_fr
             free_ways += free;
         }
     }
-    TEST_ASSERT_GREATER_THAN(least_free, free_ways);
+    TEST_ASSERT_GREATER_THAN(CASES(least_free), free_ways);
 }
 
 static void test_a_disc_sweep_is_free_just_where_dense_samples_keep_the_margin(void) {
@@ -131,7 +132,7 @@ static void test_turn_free_is_told_just_where_the_turning_disc_keeps_the_margin(
             free_places += free;
         }
     }
-    TEST_ASSERT_GREATER_THAN(100, free_places);
+    TEST_ASSERT_GREATER_THAN(CASES(100), free_places);
 }
 
 static void test_a_wall_thinner_than_a_cell_stops_a_point_sized_robot(void) {

@@ -2,6 +2,7 @@
 #include "plan/tangent.h" // first: proves that the header stands alone
 
 #include "../world/layout_fixture.h"
+#include "cases.h"
 #include "optimum.h"
 
 #include <float.h>
@@ -142,7 +143,7 @@ static void compare_some(aisle_rng *rng, double radius, int queries, tally *t) {
 
 static void test_random_polygons_give_the_oracles_length_or_its_proof(void) {
     tally t = {0};
-    for (uint32_t seed = 0; seed < 60U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(60U); seed++) {
         aisle_rng rng = aisle_rng_seed(7000U + seed);
         fix_random_scene(&scene, &rng, 6U + seed, 1);
         load();
@@ -155,7 +156,7 @@ static void test_random_polygons_give_the_oracles_length_or_its_proof(void) {
 
 static void test_random_scans_give_the_oracles_length_or_its_proof(void) {
     tally t = {0};
-    for (uint32_t seed = 0; seed < 24U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(24U); seed++) {
         aisle_rng rng = aisle_rng_seed(7100U + seed);
         fix_random_scene(&scene, &rng, 0, 1);
         fix_random_scan(&scene, &rng, 40, 30, 12U + 8U * (seed % 4U), 1);
@@ -168,7 +169,7 @@ static void test_random_scans_give_the_oracles_length_or_its_proof(void) {
 
 static void test_polygons_on_a_scan_count_together(void) {
     tally t = {0};
-    for (uint32_t seed = 0; seed < 12U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(12U); seed++) {
         aisle_rng rng = aisle_rng_seed(7200U + seed);
         fix_random_scene(&scene, &rng, 6, 1);
         fix_random_scan(&scene, &rng, 40, 30, 60, 2);
@@ -181,7 +182,7 @@ static void test_polygons_on_a_scan_count_together(void) {
 // Boxes on a lattice: everything is aligned, touches or repeats.
 static void test_aligned_touching_and_repeated_boxes_give_the_oracles_length(void) {
     tally t = {0};
-    for (uint32_t seed = 0; seed < 40U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(40U); seed++) {
         aisle_rng rng = aisle_rng_seed(7300U + seed);
         memset(&scene, 0, sizeof scene);
         scene.map_id = 7;
@@ -217,7 +218,7 @@ static void test_a_slit_a_hair_wider_than_the_disc_is_found_and_one_a_hair_narro
 // Every polygon left out in turn: the answer is the oracle's for the scene without it.
 static void test_what_is_left_out_is_as_if_it_were_not_there(void) {
     int other = 0;
-    for (uint32_t seed = 0; seed < 10U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(10U); seed++) {
         aisle_rng rng = aisle_rng_seed(7700U + seed);
         fix_random_scene(&scene, &rng, 40, 1);
         load();
@@ -271,7 +272,7 @@ static void test_any_slicing_gives_the_same_way_and_bound(void) {
 
 static void test_out_of_nodes_keeps_a_bound_that_holds(void) {
     int capacity = 0;
-    for (uint32_t seed = 0; seed < 10U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(10U); seed++) {
         aisle_rng rng = aisle_rng_seed(7500U + seed);
         carve(1U); // 1024 nodes
         fix_random_scene(&scene, &rng, 200, 1);
@@ -323,7 +324,7 @@ static double rounded_length(uint32_t n, double r) {
 
 static void test_the_polyline_is_the_way_of_the_wider_disc_with_room_for_its_arcs(void) {
     int told = 0;
-    for (uint32_t seed = 0; seed < 30U; seed++) {
+    for (uint32_t seed = 0; seed < CASES(30U); seed++) {
         aisle_rng rng = aisle_rng_seed(7600U + seed);
         fix_random_scene(&scene, &rng, 40, 1);
         load();

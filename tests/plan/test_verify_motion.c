@@ -1,3 +1,4 @@
+#include "cases.h"
 #include "test_verify_fixture.h"
 
 static aisle_verify_fault fault_with_margin(double margin) {
@@ -141,7 +142,7 @@ static void judge_random_path(int kinds, double slack, uint64_t seed, tally *out
 
 static void judge_random_paths(bool scan, bool polygons, int kinds, double slack, uint64_t seeds, int near) {
     tally out = {0, 0};
-    for (uint64_t seed = 0; seed < seeds; seed++) {
+    for (uint64_t seed = 0; seed < CASES(seeds); seed++) {
         dice = aisle_rng_seed(seed * 64U + (uint64_t)kinds * 2U + (scan ? 1U : 0U));
         random_world(scan, polygons);
         random_vehicle();
@@ -152,8 +153,8 @@ static void judge_random_paths(bool scan, bool polygons, int kinds, double slack
     char text[80];
     (void)snprintf(text, sizeof text, "%d near, %d hit", out.near, out.hit);
     TEST_MESSAGE(text);
-    TEST_ASSERT_GREATER_OR_EQUAL_MESSAGE(near, out.near, "paths that were free");
-    TEST_ASSERT_GREATER_OR_EQUAL_MESSAGE(near / 2, out.hit, "paths that were not");
+    TEST_ASSERT_GREATER_OR_EQUAL_MESSAGE(CASES(near), out.near, "paths that were free");
+    TEST_ASSERT_GREATER_OR_EQUAL_MESSAGE(CASES(near) / 2, out.hit, "paths that were not");
 }
 
 static void test_straight_paths_among_polygons_are_judged_to_the_sampling(void) {

@@ -1,8 +1,10 @@
 #include "plan/verify_moving.h"
+
+#include "cases.h"
 #include "test_verify_fixture.h"
 
 // usage: test_verify_moving [number of random cases]
-static int random_cases = 1000;
+static int random_cases = CASES(1000);
 
 static aisle_mover mover[AISLE_MOVERS_MAX];
 static aisle_movers movers;
@@ -856,7 +858,7 @@ static void test_times_that_fit_no_speeds_are_unfit(void) {
 // Whatever the bytes are, an answer comes: they should have been proved before, but may not have been.
 static void test_any_waypoints_at_all_are_answered(void) {
     int fit = 0;
-    for (uint64_t seed = 0; seed < 3000; seed++) {
+    for (uint64_t seed = 0; seed < CASES(3000); seed++) {
         dice = aisle_rng_seed(seed);
         straight_path();
         movers.count = 0;
@@ -881,8 +883,8 @@ static void test_any_waypoints_at_all_are_answered(void) {
         (void)prove();
         fit += moving.is_unfit ? 0 : 1;
     }
-    TEST_ASSERT_GREATER_THAN(500, fit);
-    TEST_ASSERT_LESS_THAN(2900, fit);
+    TEST_ASSERT_GREATER_THAN(CASES(500), fit);
+    TEST_ASSERT_LESS_THAN(CASES(2900), fit);
 }
 
 static void test_the_answer_does_not_depend_on_the_steps(void) {

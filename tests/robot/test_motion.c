@@ -2,13 +2,14 @@
 
 #include "base/angle.h"
 #include "base/rng.h"
+#include "cases.h"
 #include "motion_oracle.h"
 #include "robot/profile.h"
 #include "unity.h"
 
 #include <string.h>
 
-enum { SEEDS = 120 };
+enum { SEEDS = CASES(120) };
 
 static aisle_waypoint_msg rest[CAPACITY + AISLE_MOTION_CUT_EXTRA + 1];
 static uint32_t left; // waypoints in rest
@@ -127,7 +128,7 @@ static void test_speeds_are_what_the_contract_says_on_every_kind_of_piece(void) 
             from_rest_to_rest += !moves && !spot(path, p.piece) ? 1U : 0U;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(100, from_rest_to_rest);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), from_rest_to_rest);
 }
 
 // Time from u0 to u1 of piece i: the integral of du way / v, by the midpoints of v^2 steps fine enough for the ends at rest.
@@ -143,7 +144,7 @@ static real integrate(uint32_t i, real u0, real u1) {
 }
 
 static void test_times_are_the_integral_of_the_speeds(void) {
-    for (uint64_t seed = 0; seed < 40; seed++) {
+    for (uint64_t seed = 0; seed < CASES(40); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         make_random(seed);
         for (int k = 0; k < 12; k++) {
@@ -308,11 +309,11 @@ static void test_a_pose_on_the_path_is_found_again(void) {
             TEST_ASSERT_TRUE(off.lateral < 1e-6 && fabs(off.heading) < 1e-6);
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(5000, looked);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(5000), looked);
 }
 
 static void test_a_pose_off_a_smooth_path_is_projected_to_its_nearest_place(void) {
-    for (uint64_t seed = 0; seed < 40; seed++) {
+    for (uint64_t seed = 0; seed < CASES(40); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         setUp();
         (void)add(0.0, 0.0, uniform(&rng, -3.0, 3.0));
@@ -502,7 +503,7 @@ static void test_a_cut_path_is_the_old_one_from_there_on(void) {
             }
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(20, trapezoids);
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(20), trapezoids);
 }
 
 static void test_a_cut_path_has_the_old_times_less_the_times_of_the_cut(void) {
@@ -535,7 +536,7 @@ static void test_a_cut_path_has_the_old_times_less_the_times_of_the_cut(void) {
 }
 
 static void test_a_cut_keeps_flags_goals_and_figures_behind_the_first_waypoint(void) {
-    for (uint64_t seed = 0; seed < 30; seed++) {
+    for (uint64_t seed = 0; seed < CASES(30); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         make_random(seed + 3);
         for (uint32_t i = 1; i < count; i++) {
@@ -638,7 +639,7 @@ static aisle_place drive(aisle_place p, real v, real delay) {
 }
 
 static void test_it_rests_where_a_fine_simulation_does(void) {
-    for (uint64_t seed = 0; seed < 60; seed++) {
+    for (uint64_t seed = 0; seed < CASES(60); seed++) {
         aisle_rng rng = aisle_rng_seed(seed);
         make_random(seed);
         for (uint32_t i = 1; i < count; i++) { // pieces so short that they last their millisecond are another story

@@ -1,5 +1,6 @@
 #include "sim/batch.h" // first: proves that the header stands alone
 
+#include "cases.h"
 #include "unity.h"
 
 #include <string.h>
@@ -20,30 +21,30 @@ static void run(aisle_sim_batch *self, aisle_sim_kind kind, uint64_t first, int6
 }
 
 static void test_without_care_movers_are_hit_and_the_hall_is_not(void) {
-    run(&batch, AISLE_SIM_PERSON, 1, 20, true);
-    TEST_ASSERT_EQUAL_INT64(20, batch.done);
-    TEST_ASSERT_TRUE(batch.met > 50 && batch.collisions > 10 && batch.with_collision > 5);
+    run(&batch, AISLE_SIM_PERSON, 1, CASES(20), true);
+    TEST_ASSERT_EQUAL_INT64(CASES(20), batch.done);
+    TEST_ASSERT_TRUE(batch.met > CASES(50) && batch.collisions > CASES(10) && batch.with_collision > CASES(5));
     TEST_ASSERT_EQUAL_INT64(0, batch.hall_collisions);
-    TEST_ASSERT_TRUE(batch.arrived >= 15);
+    TEST_ASSERT_TRUE(batch.arrived >= CASES(15));
 }
 
 static void test_with_care_none_is(void) {
-    run(&batch, AISLE_SIM_PERSON, 1, 20, false); // the same drives
+    run(&batch, AISLE_SIM_PERSON, 1, CASES(20), false); // the same drives
     TEST_ASSERT_EQUAL_INT64(0, batch.collisions + batch.hall_collisions);
-    TEST_ASSERT_TRUE(batch.met > 50 && batch.arrived >= 5 && batch.revisions > 100);
+    TEST_ASSERT_TRUE(batch.met > CASES(50) && batch.arrived >= CASES(5) && batch.revisions > CASES(100));
 }
 
 static void test_nor_when_things_go_wrong_and_planning_takes_time(void) {
     aisle_sim_batch_start(&batch, AISLE_SIM_KIND_COUNT, 100);
     batch.encounters = INT64_MAX;
-    batch.episodes = 10;
+    batch.episodes = CASES(10);
     batch.faults = true;
     batch.units_per_ms = 500;
     FILE *out = tmpfile();
     TEST_ASSERT_TRUE(aisle_sim_batch_run(&batch, out));
     (void)fclose(out);
     TEST_ASSERT_EQUAL_INT64(0, batch.collisions + batch.hall_collisions);
-    TEST_ASSERT_TRUE(batch.met > 10);
+    TEST_ASSERT_TRUE(batch.met > CASES(10));
 }
 
 static void test_parts_of_a_batch_add_up_to_the_whole(void) {

@@ -1,3 +1,4 @@
+#include "cases.h"
 #include "optimum.h"
 
 #include "unity.h"
@@ -7,7 +8,7 @@
 
 // The judge here is double and sampled; it shares nothing with optimum*.c.
 
-enum { SEEDS = 40, POLYGONS = 16, CORNERS = 6, RING = 24 };
+enum { SEEDS = CASES(40), POLYGONS = 16, CORNERS = 6, RING = 24 };
 
 static const double pi = 3.14159265358979323846;
 static optimum_point corners[POLYGONS][CORNERS + 1];

@@ -1,5 +1,6 @@
 // What the oracle of poses must know: gaps, turns and corners whose limits are known in closed form, and that what one
 // half of it joins the other half does not part.
+#include "cases.h"
 #include "pose_oracle.h"
 #include "unity.h"
 
@@ -74,7 +75,7 @@ static double sampled_gap(const double placed[4][2], const double b[4], bool *ov
 static void gaps_are_those_of_sampled_outlines(void) {
     uint32_t state = 5;
     int apart = 0, met = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < CASES(300); i++) {
         const double x = 3.0 + drawn(&state, 4.0), y = 3.0 + drawn(&state, 4.0), theta = drawn(&state, 2.0 * PI);
         const double b[4] = {5.0, 5.0, 5.1 + drawn(&state, 1.0), 5.1 + drawn(&state, 1.0)};
         double placed[4][2];
@@ -102,8 +103,8 @@ static void gaps_are_those_of_sampled_outlines(void) {
         apart += told > 0.0;
         met += told < 0.0;
     }
-    TEST_ASSERT_GREATER_THAN_INT(50, apart);
-    TEST_ASSERT_GREATER_THAN_INT(50, met);
+    TEST_ASSERT_GREATER_THAN_INT(CASES(50), apart);
+    TEST_ASSERT_GREATER_THAN_INT(CASES(50), met);
 }
 
 // A corridor of 1 m leaves 5 cm on either side of a body of 0.9 m. What "enclose" takes off the body is at most a step's
@@ -239,7 +240,7 @@ static void walls_part_whatever_the_heading(void) {
 
 static void what_is_connected_is_not_parted(void) {
     int joined = 0, parted = 0;
-    for (uint32_t seed = 1; seed <= 4; seed++) {
+    for (uint32_t seed = 1; seed <= CASES(4); seed++) {
         uint32_t state = seed;
         double at[STOPS][3];
         bool connected[STOPS];
@@ -268,8 +269,8 @@ static void what_is_connected_is_not_parted(void) {
         }
         pose_oracle_end(&oracle);
     }
-    TEST_ASSERT_GREATER_THAN_INT(30, joined);
-    TEST_ASSERT_GREATER_THAN_INT(30, parted);
+    TEST_ASSERT_GREATER_THAN_INT(CASES(30), joined);
+    TEST_ASSERT_GREATER_THAN_INT(CASES(30), parted);
 }
 
 #define SIDE 4.0 // m
@@ -308,7 +309,7 @@ static void draw_mirrored(uint32_t seed, int how, double at[STOPS][3]) {
 
 static void a_mirrored_hall_has_the_same_ways(void) {
     int joined = 0;
-    for (uint32_t seed = 1; seed <= 3; seed++) {
+    for (uint32_t seed = 1; seed <= CASES(3); seed++) {
         bool straight[STOPS] = {false};
         for (int how = 0; how < 4; how++) {
             double at[STOPS][3];
@@ -323,7 +324,7 @@ static void a_mirrored_hall_has_the_same_ways(void) {
             pose_oracle_end(&oracle);
         }
     }
-    TEST_ASSERT_GREATER_THAN_INT(30, joined);
+    TEST_ASSERT_GREATER_THAN_INT(CASES(30), joined);
 }
 
 int main(void) {

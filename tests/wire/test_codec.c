@@ -1,5 +1,6 @@
 #include "wire/codec.h"
 
+#include "cases.h"
 #include "fill.h"
 #include "unity.h"
 
@@ -7,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SEEDS = 12, ROOM = 70000 };
+enum { SEEDS = CASES(12), ROOM = 70000 };
 
 static any_msg msg, back, keep;
 static uint8_t bytes[ROOM], again[ROOM];

@@ -1,5 +1,6 @@
 #include "world/collide.h"
 
+#include "cases.h"
 #include "gen.h"
 #include "unity.h"
 
@@ -39,7 +40,8 @@ static void bring_near(aisle_rng *rng, const aisle_convex *a, aisle_vec2 *b, uin
 
 // Near contact, offsets from 1e-12 to 0.1 m on both sides: what the judge sees touching must be found, and what is
 // further apart than the spare must not.
-static void check_pairs(uint64_t seed, kind k, bool is_rounded, uint32_t pairs) {
+static void check_pairs(uint64_t seed, kind k, bool is_rounded, uint32_t named) {
+    const uint32_t pairs = CASES(named);
     aisle_rng rng = aisle_rng_seed(seed);
     uint32_t touching = 0;
     uint32_t apart = 0;
@@ -122,7 +124,7 @@ static void test_hull_of_two_placements_is_what_the_body_sweeps(void) {
     enum { SAMPLES = 400 };
     aisle_rng rng = aisle_rng_seed(77);
     uint32_t hits = 0;
-    for (uint32_t trial = 0; trial < 1500U; trial++) {
+    for (uint32_t trial = 0; trial < CASES(1500U); trial++) {
         aisle_vec2 start[6];
         aisle_vec2 end[6];
         aisle_vec2 other[5];

@@ -5,8 +5,10 @@ headers_alone.py --build DIR [--cc CC] [--cxx CXX]     DIR: a configured build t
 """
 
 import argparse
+import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from csource import ROOT
@@ -48,8 +50,9 @@ def main():
         return 1
     jobs = jobs_of(arguments.root, generated, arguments.cc, arguments.cxx)
     failed = 0
-    for job in jobs:
-        complaint = compile_alone(*job)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        complaints = list(pool.map(lambda job: compile_alone(*job), jobs))
+    for job, complaint in zip(jobs, complaints):
         if complaint:
             failed += 1
             print(f"headers: {job[3]} does not stand alone as {job[2]}:\n{complaint}")
