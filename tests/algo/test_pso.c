@@ -1,87 +1,16 @@
 #include "algo/pso.h" // first: proves that the header stands alone
 
-#include "base/angle.h"
-#include "base/crc32.h"
-#include "unity.h"
+enum { DIM_MAX = 8, PARTICLES_MAX = 64, PARTICLES = 24, LEN_MAX = PARTICLES_MAX * (3 * DIM_MAX + 2) + DIM_MAX };
 
-#include <math.h>
-#include <string.h>
-
-enum {
-    DIM_MAX = 8,
-    PARTICLES_MAX = 64,
-    DIM = 3,
-    PARTICLES = 24,
-    LEN_MAX = PARTICLES_MAX * (3 * DIM_MAX + 2) + DIM_MAX
-};
-
-static const float lo[DIM] = {-1.0F, -2.0F, 0.0F}, hi[DIM] = {1.0F, 2.0F, 5.0F};
-static const float peak[DIM] = {0.25F, -1.5F, 5.0F}; // the last one lies on the wall of the box
-static float wide_lo[DIM_MAX], wide_hi[DIM_MAX];
 static float work[LEN_MAX + 1]; // one canary float behind the block
 static size_t work_len;
-static uint32_t calls;
 static aisle_pso pso;
 static aisle_pso_config cfg;
 
-// The functions; each checks that it is asked about points of the box only.
-
-static void expect_in_box(const float *x) {
-    calls++;
-    for (int i = 0; i < cfg.dim; i++) {
-        TEST_ASSERT_TRUE(x[i] >= cfg.lo[i] && x[i] <= cfg.hi[i]);
-    }
-}
-
-static float bowl_value(const float *x) {
-    float sum = 0.0F;
-    for (int i = 0; i < DIM; i++) {
-        sum += (x[i] - peak[i]) * (x[i] - peak[i]);
-    }
-    return sum;
-}
-
-static aisle_cost_pair bowl(void *ctx, const float *x) {
-    (void)ctx;
-    expect_in_box(x);
-    return (aisle_cost_pair){0.0F, bowl_value(x)};
-}
-
-static aisle_cost_pair bowl_with_a_nan_rim(void *above, const float *x) {
-    const aisle_cost_pair cost = bowl(NULL, x);
-    return cost.value > *(const float *)above ? (aisle_cost_pair){0.0F, NAN} : cost;
-}
-
-// Only x[0] >= 0.5 is feasible, and that is dearer: value alone would go the other way.
-static aisle_cost_pair walled_bowl(void *ctx, const float *x) {
-    const aisle_cost_pair cost = bowl(ctx, x);
-    return (aisle_cost_pair){x[0] < 0.5F ? 0.5F - x[0] : 0.0F, cost.value};
-}
-
-static aisle_cost_pair rosenbrock(void *ctx, const float *x) {
-    (void)ctx;
-    expect_in_box(x);
-    float sum = 0.0F;
-    for (int i = 0; i + 1 < cfg.dim; i++) {
-        const float a = x[i + 1] - x[i] * x[i];
-        const float b = 1.0F - x[i];
-        sum += 100.0F * a * a + b * b;
-    }
-    return (aisle_cost_pair){0.0F, sum};
-}
-
-static aisle_cost_pair rastrigin(void *ctx, const float *x) {
-    (void)ctx;
-    expect_in_box(x);
-    double sum = 0.0;
-    for (int i = 0; i < cfg.dim; i++) {
-        double sine;
-        double cosine;
-        aisle_sincos(2.0 * AISLE_PI * (double)x[i], &sine, &cosine); // the same hits on every board
-        sum += (double)(x[i] * x[i]) + 10.0 - 10.0 * cosine;
-    }
-    return (aisle_cost_pair){0.0F, (float)sum};
-}
+#define SEARCH(word) aisle_pso_##word
+#define SELF pso
+#define DIMENSIONS dim
+#include "population_search.h"
 
 static aisle_status start(void) {
     work_len = AISLE_PSO_WORK_LEN(cfg.dim, cfg.particles);
@@ -90,36 +19,12 @@ static aisle_status start(void) {
     return aisle_pso_start(&pso, &cfg, work, work_len);
 }
 
-// Runs to the end and checks the budget of every step.
-static aisle_status run_in_steps_of(uint32_t slice) {
-    TEST_ASSERT_EQUAL(AISLE_OK, start());
-    aisle_status st = AISLE_BUSY;
-    while (st == AISLE_BUSY) {
-        calls = 0;
-        st = aisle_pso_step(&pso, slice);
-        TEST_ASSERT_TRUE(st == AISLE_BUSY ? calls == slice : calls <= slice);
-    }
-    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
-    return st;
+static void use_few_evaluations(void) {
+    cfg.eval_max = 100;
 }
 
-// How many of the seeds 0 .. seeds-1 meet the goal.
-static uint32_t hits_of(uint64_t seeds) {
-    uint32_t hits = 0;
-    for (cfg.seed = 0; cfg.seed < seeds; cfg.seed++) {
-        hits += run_in_steps_of(UINT32_MAX) == AISLE_OK;
-    }
-    return hits;
-}
-
-static void use_wide_box(uint16_t dim, float half) {
-    for (int i = 0; i < DIM_MAX; i++) {
-        wide_lo[i] = -half;
-        wide_hi[i] = half;
-    }
-    cfg.dim = dim;
-    cfg.lo = wide_lo;
-    cfg.hi = wide_hi;
+static uint32_t evaluations_in_all(void) {
+    return cfg.eval_max;
 }
 
 void setUp(void) {
@@ -138,13 +43,6 @@ void setUp(void) {
 }
 void tearDown(void) {
     TEST_ASSERT_EQUAL_FLOAT(42.0F, work[work_len]);
-}
-
-static void test_minimum_on_the_wall_is_found_for_200_of_200_seeds(void) {
-    TEST_ASSERT_EQUAL_UINT32(200, hits_of(200));
-    for (int i = 0; i < DIM; i++) {
-        TEST_ASSERT_FLOAT_WITHIN(1e-3F, peak[i], aisle_pso_best(&pso)[i]); // sqrt(value_goal)
-    }
 }
 
 static void test_minimum_is_found_with_falling_inertia_for_200_of_200_seeds(void) {
@@ -193,39 +91,16 @@ static void test_rastrigin_in_3_dimensions_is_hit_for_49_and_50_of_50_seeds(void
 }
 
 static void test_any_slicing_gives_the_same_bits(void) {
-    float whole[DIM];
     for (int mode = 0; mode < 2; mode++) {
         cfg.inertia = mode == 0 ? AISLE_PSO_FALLING : AISLE_PSO_CONSTRICTION;
-        (void)run_in_steps_of(UINT32_MAX);
-        memcpy(whole, aisle_pso_best(&pso), sizeof whole);
-        const uint32_t evals = pso.evals;
-        for (uint32_t slice = 1; slice < 40; slice++) {
-            (void)run_in_steps_of(slice);
-            TEST_ASSERT_EQUAL_UINT32(evals, pso.evals);
-            TEST_ASSERT_EQUAL_MEMORY(whole, aisle_pso_best(&pso), sizeof whole);
-        }
+        expect_same_bits_in_slices();
     }
 }
 
 static void test_invariants_hold_after_every_evaluation(void) {
     cfg.cost = walled_bowl;
     cfg.eval_max = 500;
-    TEST_ASSERT_EQUAL(AISLE_OK, start());
-    do {
-        TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
-    } while (aisle_pso_step(&pso, 1) == AISLE_BUSY);
-    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
-}
-
-static void test_seeds_differ(void) {
-    float first[DIM];
-    cfg.value_goal = -INFINITY;
-    cfg.eval_max = 100;
-    (void)run_in_steps_of(9);
-    memcpy(first, aisle_pso_best(&pso), sizeof first);
-    cfg.seed = 2;
-    (void)run_in_steps_of(9);
-    TEST_ASSERT_TRUE(memcmp(first, aisle_pso_best(&pso), sizeof first) != 0);
+    expect_invariants_after_every_evaluation();
 }
 
 static void test_first_point_asked_about_is_the_guess(void) {
@@ -234,7 +109,7 @@ static void test_first_point_asked_about_is_the_guess(void) {
     cfg.spread = 0.1F;
     TEST_ASSERT_EQUAL(AISLE_OK, start());
     TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_pso_step(&pso, 1));
-    TEST_ASSERT_EQUAL_MEMORY(guess, aisle_pso_best(&pso), sizeof guess);
+    TEST_ASSERT_EQUAL_MEMORY(guess, best(), sizeof guess);
     TEST_ASSERT_EQUAL_UINT32(1, pso.best_updates);
 }
 
@@ -243,8 +118,8 @@ static void test_guess_outside_is_clamped_to_the_box(void) {
     cfg.guess = guess;
     TEST_ASSERT_EQUAL(AISLE_OK, start());
     (void)aisle_pso_step(&pso, 1);
-    TEST_ASSERT_EQUAL_FLOAT(-1.0F, aisle_pso_best(&pso)[0]);
-    TEST_ASSERT_EQUAL_FLOAT(2.0F, aisle_pso_best(&pso)[1]);
+    TEST_ASSERT_EQUAL_FLOAT(-1.0F, best()[0]);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, best()[1]);
 }
 
 static void test_result_is_never_worse_than_the_guess_for_200_of_200_seeds(void) {
@@ -254,7 +129,7 @@ static void test_result_is_never_worse_than_the_guess_for_200_of_200_seeds(void)
     cfg.value_goal = -INFINITY;
     for (cfg.seed = 0; cfg.seed < 200; cfg.seed++) {
         TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(7));
-        TEST_ASSERT_TRUE(bowl_value(aisle_pso_best(&pso)) <= bowl_value(guess));
+        TEST_ASSERT_TRUE(bowl_value(best()) <= bowl_value(guess));
     }
 }
 
@@ -297,29 +172,6 @@ static void test_feasible_is_better_than_any_value(void) {
     TEST_ASSERT_TRUE(aisle_cost_pair_better((aisle_cost_pair){5.0F, 5.0F}, (aisle_cost_pair){INFINITY, INFINITY}));
 }
 
-static void test_violation_comes_first_for_100_of_100_seeds(void) {
-    cfg.cost = walled_bowl;
-    cfg.value_goal = -INFINITY;
-    for (cfg.seed = 0; cfg.seed < 100; cfg.seed++) {
-        TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(100));
-        TEST_ASSERT_TRUE(aisle_pso_best(&pso)[0] >= 0.5F);
-        TEST_ASSERT_FLOAT_WITHIN(2e-3F, 0.0625F, pso.best_cost.value); // (0.5 - 0.25)^2: at the wall
-        TEST_ASSERT_TRUE(pso.best_cost.violation <= 0.0F);
-    }
-}
-
-static aisle_cost_pair never_feasible(void *ctx, const float *x) {
-    const aisle_cost_pair cost = bowl(ctx, x);
-    return (aisle_cost_pair){1.0F + cost.value, -1000.0F};
-}
-
-static void test_goal_is_not_met_by_a_point_that_violates(void) {
-    cfg.cost = never_feasible;
-    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(64));
-    TEST_ASSERT_EQUAL_UINT32(cfg.eval_max, pso.evals);
-    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.0F, pso.best_cost.violation); // but the least violation is found
-}
-
 static void test_nan_rim_is_counted_and_the_minimum_still_found_for_200_of_200_seeds(void) {
     float above = 4.0F;
     cfg.cost = bowl_with_a_nan_rim;
@@ -336,92 +188,11 @@ static void test_a_small_allowed_place_is_looked_for_at_random_until_seen(void) 
     TEST_ASSERT_EQUAL_UINT32(100, hits_of(100));
 }
 
-static void test_nan_everywhere_ends_partial_with_no_best(void) {
-    float nowhere = -1.0F;
-    cfg.cost = bowl_with_a_nan_rim;
-    cfg.cost_ctx = &nowhere;
-    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(7));
-    TEST_ASSERT_NULL(aisle_pso_best(&pso));
-    TEST_ASSERT_EQUAL_UINT32(cfg.eval_max, pso.nan_costs);
-    TEST_ASSERT_EQUAL_UINT32(0, pso.best_updates);
-    TEST_ASSERT_TRUE(isinf(pso.best_cost.violation) && isinf(pso.best_cost.value));
-}
-
-static aisle_cost_pair answer;
-
-static aisle_cost_pair always(void *ctx, const float *x) {
-    (void)ctx;
-    expect_in_box(x);
-    return answer;
-}
-
-static void expect_no_best_for(float violation, float value) {
-    answer = (aisle_cost_pair){violation, value};
-    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(11));
-    TEST_ASSERT_NULL(aisle_pso_best(&pso));
-}
-
-static void test_infinity_or_nan_in_either_part_is_not_allowed(void) {
-    cfg.cost = always;
-    cfg.value_goal = INFINITY;
-    cfg.eval_max = 50;
-    expect_no_best_for(INFINITY, 0.0F);
-    TEST_ASSERT_EQUAL_UINT32(0, pso.nan_costs);
-    expect_no_best_for(0.0F, INFINITY);
-    expect_no_best_for(NAN, 0.0F);
-    TEST_ASSERT_EQUAL_UINT32(50, pso.nan_costs);
-    expect_no_best_for(0.0F, NAN);
-    TEST_ASSERT_EQUAL_UINT32(50, pso.nan_costs);
-}
-
-static void test_negative_violation_is_read_as_feasible(void) {
-    cfg.cost = always;
-    answer = (aisle_cost_pair){-3.0F, 0.0F};
-    TEST_ASSERT_EQUAL(AISLE_OK, run_in_steps_of(11));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, pso.best_cost.violation);
-    TEST_ASSERT_EQUAL_UINT32(1, pso.evals);
-}
-
-static void test_stall_ends_the_run_that_many_evaluations_after_the_last_gain(void) {
-    cfg.cost = always;
-    answer = (aisle_cost_pair){0.0F, 5.0F};
-    cfg.stall_max = 77;
-    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(10));
-    TEST_ASSERT_EQUAL_UINT32(1, pso.last_improvement);
-    TEST_ASSERT_EQUAL_UINT32(78, pso.evals);
-    cfg.cost = bowl;
-    cfg.value_goal = -INFINITY;
-    TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(10));
-    TEST_ASSERT_TRUE(pso.evals - pso.last_improvement == 77 || pso.evals == cfg.eval_max);
-}
-
 static void test_eval_max_is_used_up_and_never_exceeded(void) {
     cfg.value_goal = -INFINITY;
     cfg.eval_max = 1234;
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(1000));
     TEST_ASSERT_EQUAL_UINT32(1234, pso.evals);
-}
-
-static void test_further_steps_repeat_the_answer_and_cost_nothing(void) {
-    TEST_ASSERT_EQUAL(AISLE_OK, run_in_steps_of(50));
-    const uint32_t evals = pso.evals;
-    calls = 0;
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_pso_step(&pso, 50));
-    TEST_ASSERT_TRUE(calls == 0 && pso.evals == evals);
-}
-
-static void test_a_step_of_nothing_asks_nothing(void) {
-    TEST_ASSERT_EQUAL(AISLE_OK, start());
-    calls = 0;
-    TEST_ASSERT_EQUAL(AISLE_BUSY, aisle_pso_step(&pso, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, calls);
-    TEST_ASSERT_NULL(aisle_pso_best(&pso));
-}
-
-static void test_start_calls_no_cost(void) {
-    calls = 0;
-    TEST_ASSERT_EQUAL(AISLE_OK, start());
-    TEST_ASSERT_EQUAL_UINT32(0, calls);
 }
 
 static void test_counters_count(void) {
@@ -432,26 +203,25 @@ static void test_counters_count(void) {
     TEST_ASSERT_EQUAL_UINT32(calls, pso.evals);
     TEST_ASSERT_TRUE(pso.best_updates > 10 && pso.best_updates < 200);
     TEST_ASSERT_EQUAL_UINT32(0, pso.nan_costs);
-    TEST_ASSERT_TRUE(bowl_value(aisle_pso_best(&pso)) <= pso.best_cost.value &&
-                     bowl_value(aisle_pso_best(&pso)) >= pso.best_cost.value);
+    TEST_ASSERT_TRUE(bowl_value(best()) <= pso.best_cost.value && bowl_value(best()) >= pso.best_cost.value);
 }
 
 static void test_falling_inertia_takes_the_stated_defaults(void) {
     float by_default[DIM];
     cfg.inertia = AISLE_PSO_FALLING;
     (void)run_in_steps_of(64);
-    memcpy(by_default, aisle_pso_best(&pso), sizeof by_default);
+    memcpy(by_default, best(), sizeof by_default);
     cfg.w_start = 0.9F;
     cfg.w_end = 0.4F;
     cfg.c1 = cfg.c2 = 2.0F;
     (void)run_in_steps_of(64);
-    TEST_ASSERT_EQUAL_MEMORY(by_default, aisle_pso_best(&pso), sizeof by_default);
+    TEST_ASSERT_EQUAL_MEMORY(by_default, best(), sizeof by_default);
     const aisle_pso_config same = cfg;
 #define CHANGES(field, value)                                                                                          \
     cfg = same;                                                                                                        \
     cfg.field = (value);                                                                                               \
     (void)run_in_steps_of(64);                                                                                         \
-    TEST_ASSERT_TRUE_MESSAGE(memcmp(by_default, aisle_pso_best(&pso), sizeof by_default) != 0, #field)
+    TEST_ASSERT_TRUE_MESSAGE(memcmp(by_default, best(), sizeof by_default) != 0, #field)
     CHANGES(w_start, 0.8F);
     CHANGES(w_end, 0.2F);
     CHANGES(c1, 1.5F);
@@ -475,7 +245,7 @@ static void test_a_particle_moves_by_the_stated_formula(void) {
         aisle_rng rng = pso.rng;
         const float *p = v + PARTICLES * DIM;
         (void)aisle_pso_step(&pso, 1);
-        const float *g = aisle_pso_best(&pso);
+        const float *g = best();
         for (int i = 0; i < DIM; i++) {
             const double r1 = (double)aisle_rng_float(&rng);
             const double r2 = (double)aisle_rng_float(&rng);
@@ -491,7 +261,7 @@ static void test_a_particle_moves_by_the_stated_formula(void) {
     }
 }
 
-static void expect_refusal(const char *field) {
+static void expect_bad(const char *field) {
     static aisle_pso before;
     static float before_work[LEN_MAX];
     memcpy(&before, &pso, sizeof pso);
@@ -507,7 +277,7 @@ static void test_start_refuses_each_bad_field_and_leaves_everything_alone(void) 
 #define REFUSE(field, value)                                                                                           \
     cfg = good;                                                                                                        \
     cfg.field = (value);                                                                                               \
-    expect_refusal(#field " = " #value)
+    expect_bad(#field " = " #value)
     REFUSE(cost, NULL);
     REFUSE(lo, NULL);
     REFUSE(hi, NULL);
@@ -535,22 +305,12 @@ static void test_start_refuses_each_bad_field_and_leaves_everything_alone(void) 
     TEST_ASSERT_EQUAL_UINT32(77, pso.evals);
 }
 
-static void test_start_refuses_every_bad_box_and_guess(void) {
-    const float bad[6][2] = {{1.0F, 1.0F}, {2.0F, 1.0F}, {NAN, 1.0F}, {0.0F, NAN}, {-INFINITY, 0.0F}, {0.0F, 2e30F}};
-    for (int i = 0; i < 6; i++) {
-        for (int at = 0; at < DIM; at++) {
-            use_wide_box(DIM, 1.0F);
-            wide_lo[at] = bad[i][0];
-            wide_hi[at] = bad[i][1];
-            expect_refusal("box");
-        }
-    }
-    use_wide_box(DIM, 1.0F);
+static void test_start_refuses_a_bad_guess(void) {
     float guess[DIM] = {0.0F, NAN, 0.0F};
     cfg.guess = guess;
-    expect_refusal("guess");
+    expect_bad("guess");
     guess[1] = INFINITY;
-    expect_refusal("guess");
+    expect_bad("guess");
 }
 
 static void test_start_refuses_work_one_float_short_and_leaves_self_alone(void) {
@@ -572,12 +332,6 @@ static void test_the_largest_box_and_spread_stay_finite(void) {
     cfg.cost = always;
     answer = (aisle_cost_pair){0.0F, 1.0F};
     TEST_ASSERT_EQUAL(AISLE_PARTIAL, run_in_steps_of(100)); // expect_in_box() refuses NaN
-}
-
-static void test_never_started_answers_so(void) {
-    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_pso_step(&pso, 1));
-    TEST_ASSERT_NULL(aisle_pso_best(&pso));
-    TEST_ASSERT_TRUE(aisle_pso_invariants_hold(&pso));
 }
 
 static void test_invariants_notice_spoilt_fields(void) {
@@ -620,13 +374,7 @@ static void test_bits_are_those_of_every_other_board(void) {
         cfg.inertia = cfg.seed % 2 == 0 ? AISLE_PSO_FALLING : AISLE_PSO_CONSTRICTION;
         cfg.cost = cfg.seed % 3 == 0 ? walled_bowl : bowl;
         (void)run_in_steps_of(33);
-        for (int i = 0; i < DIM; i++) {
-            uint32_t bits;
-            memcpy(&bits, &aisle_pso_best(&pso)[i], sizeof bits);
-            const uint8_t bytes[4] = {(uint8_t)bits, (uint8_t)(bits >> 8), (uint8_t)(bits >> 16),
-                                      (uint8_t)(bits >> 24)};
-            crc = aisle_crc32(crc, bytes, sizeof bytes);
-        }
+        crc = crc_with_best(crc);
     }
     TEST_ASSERT_EQUAL_HEX32(0x5AA716EF, crc);
 }
@@ -650,45 +398,34 @@ static void test_a_particle_not_allowed_is_drawn_anew_at_once(void) {
             before = pso.next;
         }
         TEST_ASSERT_TRUE(pso.relocations > 0U && pso.relocations < pso.evals);
-        TEST_ASSERT_NOT_NULL(aisle_pso_best(&pso));
+        TEST_ASSERT_NOT_NULL(best());
     }
 }
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(test_minimum_on_the_wall_is_found_for_200_of_200_seeds);
+    run_tests_of_both();
     RUN_TEST(test_minimum_is_found_with_falling_inertia_for_200_of_200_seeds);
     RUN_TEST(test_rosenbrock_in_2_dimensions_is_hit_for_100_and_99_of_100_seeds);
     RUN_TEST(test_rosenbrock_in_5_dimensions_is_hit_for_43_and_50_of_50_seeds);
     RUN_TEST(test_rastrigin_in_3_dimensions_is_hit_for_49_and_50_of_50_seeds);
     RUN_TEST(test_any_slicing_gives_the_same_bits);
     RUN_TEST(test_invariants_hold_after_every_evaluation);
-    RUN_TEST(test_seeds_differ);
     RUN_TEST(test_first_point_asked_about_is_the_guess);
     RUN_TEST(test_guess_outside_is_clamped_to_the_box);
     RUN_TEST(test_result_is_never_worse_than_the_guess_for_200_of_200_seeds);
     RUN_TEST(test_particles_start_within_the_spread_and_fill_it);
     RUN_TEST(test_feasible_is_better_than_any_value);
-    RUN_TEST(test_violation_comes_first_for_100_of_100_seeds);
-    RUN_TEST(test_goal_is_not_met_by_a_point_that_violates);
     RUN_TEST(test_nan_rim_is_counted_and_the_minimum_still_found_for_200_of_200_seeds);
     RUN_TEST(test_a_small_allowed_place_is_looked_for_at_random_until_seen);
-    RUN_TEST(test_nan_everywhere_ends_partial_with_no_best);
-    RUN_TEST(test_infinity_or_nan_in_either_part_is_not_allowed);
-    RUN_TEST(test_negative_violation_is_read_as_feasible);
-    RUN_TEST(test_stall_ends_the_run_that_many_evaluations_after_the_last_gain);
     RUN_TEST(test_eval_max_is_used_up_and_never_exceeded);
-    RUN_TEST(test_further_steps_repeat_the_answer_and_cost_nothing);
-    RUN_TEST(test_a_step_of_nothing_asks_nothing);
-    RUN_TEST(test_start_calls_no_cost);
     RUN_TEST(test_counters_count);
     RUN_TEST(test_falling_inertia_takes_the_stated_defaults);
     RUN_TEST(test_a_particle_moves_by_the_stated_formula);
     RUN_TEST(test_start_refuses_each_bad_field_and_leaves_everything_alone);
-    RUN_TEST(test_start_refuses_every_bad_box_and_guess);
+    RUN_TEST(test_start_refuses_a_bad_guess);
     RUN_TEST(test_start_refuses_work_one_float_short_and_leaves_self_alone);
     RUN_TEST(test_the_largest_box_and_spread_stay_finite);
-    RUN_TEST(test_never_started_answers_so);
     RUN_TEST(test_invariants_notice_spoilt_fields);
     RUN_TEST(test_bits_are_those_of_every_other_board);
     RUN_TEST(test_a_particle_not_allowed_is_drawn_anew_at_once);
