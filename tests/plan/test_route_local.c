@@ -1,14 +1,9 @@
 #include "plan/route.h"
 
-#include "door.h"
-#include "hall_route.h"
+#include "asked_route.h"
 
 enum { SEEDS = 12 };
 
-static aisle_route route;
-static aisle_request request;
-static aisle_path_msg head;
-static aisle_path_msg answer;
 static aisle_movers movers;
 static aisle_mover mover[8];
 static int64_t from_us;
@@ -30,35 +25,25 @@ static void add_mover(int32_t id, double x, double y, double vx, double radius) 
 }
 
 static void ask(double x0, double y0, double x1, double y1) {
-    request = (aisle_request){.is_query = true, .query_id = 5, .map_id = 1, .num_goals = 1};
-    request.options.planner = AISLE_OPTIONS_PSO_LOCAL;
-    request.start = (aisle_goal_msg){.x = x0, .y = y0, .tolerance_theta = 4.0F};
-    request.goals[0] = (aisle_goal_msg){.id = 11, .x = x1, .y = y1, .tolerance_theta = 4.0F};
+    route_ask(AISLE_OPTIONS_PSO_LOCAL, x0, y0, x1, y1);
 }
 
 static void plan(uint32_t slice) {
-    head = (aisle_path_msg){.boot_id = 3, .path_revision = 8, .utime = 100, .t0_utime = 100};
-    aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
+    route_begin();
     if (with_movers) {
         aisle_route_go_round(&route, &movers, from_us, in_motion);
     }
-    while (aisle_route_step(&route, slice) != AISLE_OK) {
-    }
+    route_finish(slice);
 }
 
-// The answer decoded and judged; fails where there is none.
 static const aisle_proof *proof(void) {
-    const aisle_proof *proof = aisle_route_answer(&route);
-    TEST_ASSERT_NOT_NULL(proof);
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, &answer, NULL));
-    (void)door_judge(&answer);
+    const aisle_proof *proof = route_proof();
     TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_PSO_LOCAL, answer.planner);
     return proof;
 }
 
 static void refused_with(int16_t cause, int32_t id) {
-    TEST_ASSERT_NULL(aisle_route_answer(&route));
-    TEST_ASSERT_EQUAL_INT16(cause, route.cause.cause);
+    route_refused(cause);
     TEST_ASSERT_EQUAL_INT32(id, route.cause.id);
 }
 

@@ -1,14 +1,10 @@
 // PRM by name: proved paths, the roadmap kept from query to query, lists that leave nothing, refusals.
 #include "plan/planner_state.h"
 
-#include "door.h"
-#include "hall_route.h"
+#include "asked_route.h"
 
 enum { SEEDS = 5, OTHER = 1 };
 
-static aisle_route route;
-static aisle_request request;
-static aisle_path_msg head, answer;
 static aisle_pose_msg here;
 static aisle_layout_patch_msg patch;
 
@@ -16,48 +12,25 @@ static void open_hall(void) {
     hall_open_route(&route, &hall_limits, 2000000U);
 }
 
-// A wall with one slit, `gap` wide.
-static void slit_hall(double gap) {
-    hall_begin(10.0, 6.0);
-    hall_add(4.75, 0.0, 5.25, 4.2 - 0.5 * gap);
-    hall_add(4.75, 4.2 + 0.5 * gap, 5.25, 6.0);
+static void open_slit_hall(double gap) {
+    slit_hall(gap);
     open_hall();
 }
 
 static void ask(void) {
-    request = (aisle_request){.is_query = true, .query_id = 5, .map_id = 1, .num_goals = 1};
-    request.options.planner = AISLE_OPTIONS_PRM;
+    route_ask(AISLE_OPTIONS_PRM, 1.0, 1.0, 9.0, 1.0);
     request.options.objective = AISLE_OPTIONS_SHORTEST;
-    request.start = (aisle_goal_msg){.x = 1.0, .y = 1.0, .tolerance_theta = 4.0F};
-    request.goals[0] = (aisle_goal_msg){.id = 11, .x = 9.0, .y = 1.0, .tolerance_theta = 4.0F};
-}
-
-static void begin(void) {
-    head = (aisle_path_msg){.boot_id = 3, .path_revision = 8, .utime = 100, .t0_utime = 100};
-    aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
-    route.forgetful = true;
-    route.stage = AISLE_ROUTE_CHECK;
 }
 
 static void plan(uint32_t slice) {
-    begin();
-    while (aisle_route_step(&route, slice) != AISLE_OK) {
-    }
+    route_begin_anew();
+    route_finish(slice);
 }
 
-// The answer decoded and judged; fails where there is none.
 static const aisle_proof *proof(void) {
-    const aisle_proof *proof = aisle_route_answer(&route);
-    TEST_ASSERT_NOT_NULL(proof);
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, &answer, NULL));
-    (void)door_judge(&answer);
+    const aisle_proof *proof = route_proof();
     TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_PRM, answer.planner);
     return proof;
-}
-
-static void refused(int16_t cause) {
-    TEST_ASSERT_NULL(aisle_route_answer(&route));
-    TEST_ASSERT_EQUAL_INT16(cause, route.cause.cause);
 }
 
 void setUp(void) {
@@ -68,7 +41,7 @@ void tearDown(void) {}
 // ---- paths
 
 static void test_every_objective_gets_a_proved_path_from_one_roadmap(void) {
-    slit_hall(0.9);
+    open_slit_hall(0.9);
     for (int8_t objective = AISLE_OPTIONS_SAFEST; objective <= AISLE_OPTIONS_LEAST_ENERGY; objective++) {
         ask();
         request.options.objective = objective;
@@ -84,7 +57,7 @@ static void test_bodies_with_a_heading_and_cars_are_driven_as_they_can(void) {
     for (int car = 0; car < 2; car++) {
         hall_rectangle(1.0, 0.6, 0.05F);
         hall_vehicle.curvature_max = car != 0 ? 1.0 : 0.0;
-        slit_hall(1.6);
+        open_slit_hall(1.6);
         ask();
         request.start.tolerance_theta = request.goals[0].tolerance_theta = 0.1F;
         request.goals[0].theta = -1.5;
@@ -95,7 +68,7 @@ static void test_bodies_with_a_heading_and_cars_are_driven_as_they_can(void) {
 }
 
 static void test_draws_are_doubled_where_they_do_not_join_the_ends(void) { // 5 of 5 seeds
-    slit_hall(0.8);
+    open_slit_hall(0.8);
     for (int32_t seed = 1; seed <= SEEDS; seed++) {
         ask();
         request.options.seed = seed;
@@ -112,7 +85,7 @@ static void test_draws_are_doubled_where_they_do_not_join_the_ends(void) { // 5 
 }
 
 static void test_the_papers_form_tests_every_edge_and_draws_no_more(void) {
-    slit_hall(1.2);
+    open_slit_hall(1.2);
     ask();
     request.options.objective = AISLE_OPTIONS_PAPER;
     request.options.num_samples = 600;
@@ -128,7 +101,7 @@ static void test_the_papers_form_tests_every_edge_and_draws_no_more(void) {
     }
     request.options.num_samples = 20;
     plan(1000);
-    refused(AISLE_STATUS_BUDGET);
+    route_refused(AISLE_STATUS_BUDGET);
     TEST_ASSERT_EQUAL_UINT32(20, map->count);
 }
 
@@ -137,7 +110,7 @@ static void test_the_same_seed_gives_the_same_bytes_however_it_is_cut(void) {
     const uint32_t slices[3] = {UINT32_MAX / 2U, 7, 1};
     size_t size = 0;
     for (int i = 0; i < 4; i++) {
-        slit_hall(0.9);
+        open_slit_hall(0.9);
         ask();
         request.options.num_samples = 30; // grows
         request.options.seed = i < 3 ? 0 : 77;
@@ -153,7 +126,7 @@ static void test_the_same_seed_gives_the_same_bytes_however_it_is_cut(void) {
 // ---- goal lists
 
 static void test_a_list_has_one_roadmap_for_its_legs_and_leaves_nothing(void) {
-    slit_hall(0.9);
+    open_slit_hall(0.9);
     ask();
     request.num_goals = 4;
     for (int16_t i = 1; i < 4; i++) {
@@ -176,7 +149,7 @@ static void test_a_list_has_one_roadmap_for_its_legs_and_leaves_nothing(void) {
 }
 
 static void test_a_list_begins_with_what_queries_have_left(void) {
-    slit_hall(0.9);
+    open_slit_hall(0.9);
     ask();
     plan(1000);
     const int32_t units = (int32_t)route.spent;
@@ -195,29 +168,29 @@ static void test_closed_halls_are_refused_with_a_proof(void) {
     open_hall();
     ask();
     plan(10000);
-    refused(AISLE_STATUS_NO_PATH);
-    slit_hall(0.65);
+    route_refused(AISLE_STATUS_NO_PATH);
+    open_slit_hall(0.65);
     plan(10000);
-    refused(AISLE_STATUS_TOO_NARROW);
+    route_refused(AISLE_STATUS_TOO_NARROW);
 }
 
 static void test_a_slit_that_no_draw_gets_through_is_no_proof(void) {
-    slit_hall(0.702);
+    open_slit_hall(0.702);
     ask();
     plan(10000);
-    refused(AISLE_STATUS_BUDGET);
+    route_refused(AISLE_STATUS_BUDGET);
     TEST_ASSERT_EQUAL_UINT32(route.keep.map.capacity, route.keep.map.count);
     TEST_ASSERT_EQUAL_INT32(11, request.goals[route.named].id);
 }
 
 // The budget is held, whatever stage it ends in; the next query goes on where this one ended, to the same answer.
 static void test_a_roadmap_half_built_by_the_budget_is_gone_on_with(void) {
-    slit_hall(0.9);
+    open_slit_hall(0.9);
     ask();
     plan(1000);
     const float length = (proof(), answer.length);
     bool found = false;
-    slit_hall(0.9);
+    open_slit_hall(0.9);
     for (int i = 0; i < 40 && !found; i++) {
         request.options.work_units = 500;
         plan(50);

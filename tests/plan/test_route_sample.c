@@ -1,51 +1,33 @@
 #include "plan/route.h"
 
-#include "door.h"
-#include "hall_route.h"
+#include "asked_route.h"
 
 enum { SEEDS = 5, PLANNERS = 4 };
 
 static const int8_t planners[PLANNERS] = {AISLE_OPTIONS_RRT, AISLE_OPTIONS_RRT_ADAPTIVE, AISLE_OPTIONS_RRT_STAR,
                                           AISLE_OPTIONS_RRT_STAR_ADAPTIVE};
-static aisle_route route;
-static aisle_request request;
-static aisle_path_msg head;
-static aisle_path_msg answer;
 
 static void open_hall(void) {
     hall_open_route(&route, &hall_limits, 2000000U);
 }
 
-// A wall with one slit, `gap` wide.
-static void slit_hall(double gap) {
-    hall_begin(10.0, 6.0);
-    hall_add(4.75, 0.0, 5.25, 4.2 - 0.5 * gap);
-    hall_add(4.75, 4.2 + 0.5 * gap, 5.25, 6.0);
+static void open_slit_hall(double gap) {
+    slit_hall(gap);
     open_hall();
 }
 
 static void ask(int8_t planner) {
-    request = (aisle_request){.is_query = true, .query_id = 5, .map_id = 1, .num_goals = 1};
-    request.options.planner = planner;
+    route_ask(planner, 1.0, 1.0, 9.0, 1.0);
     request.options.objective = AISLE_OPTIONS_SHORTEST;
-    request.start = (aisle_goal_msg){.x = 1.0, .y = 1.0, .tolerance_theta = 4.0F};
-    request.goals[0] = (aisle_goal_msg){.id = 11, .x = 9.0, .y = 1.0, .tolerance_theta = 4.0F};
 }
 
 static void plan(uint32_t slice) {
-    head = (aisle_path_msg){.boot_id = 3, .path_revision = 8, .utime = 100, .t0_utime = 100};
-    aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
-    route.forgetful = true;
-    route.stage = AISLE_ROUTE_CHECK;
-    while (aisle_route_step(&route, slice) != AISLE_OK) {
-    }
+    route_begin_anew();
+    route_finish(slice);
 }
 
-// The answer decoded and judged; fails where there is none.
 static const aisle_proof *proof(int16_t cause) {
-    const aisle_proof *proof = aisle_route_answer(&route);
-    TEST_ASSERT_NOT_NULL(proof);
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, &answer, NULL));
+    const aisle_proof *proof = route_answer();
     TEST_ASSERT_EQUAL_INT16(cause, answer.cause);
     answer.cause = 0;
     (void)door_judge(&answer);
@@ -59,7 +41,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static void test_each_planner_answers_with_a_proved_path_of_its_name(void) {
-    slit_hall(0.8);
+    open_slit_hall(0.8);
     for (int i = 0; i < PLANNERS; i++) {
         for (int8_t objective = AISLE_OPTIONS_SAFEST; objective <= AISLE_OPTIONS_LEAST_ENERGY; objective++) {
             ask(planners[i]);
@@ -72,7 +54,7 @@ static void test_each_planner_answers_with_a_proved_path_of_its_name(void) {
 }
 
 static void test_an_adaptive_planner_gets_through_a_slit_with_any_step(void) { // 5 of 5 seeds for each
-    slit_hall(0.73);
+    open_slit_hall(0.73);
     for (int32_t seed = 1; seed <= SEEDS; seed++) {
         for (int i = 1; i < PLANNERS; i += 2) {
             ask(planners[i]);
@@ -85,7 +67,7 @@ static void test_an_adaptive_planner_gets_through_a_slit_with_any_step(void) { /
 }
 
 static void test_in_the_papers_form_a_fixed_step_fails_and_the_adaptive_one_does_not(void) { // 0 and 5 of 5 seeds
-    slit_hall(0.77);
+    open_slit_hall(0.77);
     for (int32_t seed = 1; seed <= SEEDS; seed++) {
         for (int i = 0; i < 2; i++) {
             ask(planners[i]);
@@ -108,7 +90,7 @@ static void test_bodies_with_a_heading_and_cars_are_driven_as_they_can(void) {
     for (int car = 0; car < 2; car++) {
         hall_rectangle(1.0, 0.6, 0.05F);
         hall_vehicle.curvature_max = car != 0 ? 1.0 : 0.0;
-        slit_hall(1.4);
+        open_slit_hall(1.4);
         for (int i = 0; i < PLANNERS; i++) {
             ask(planners[i]);
             request.start.tolerance_theta = request.goals[0].tolerance_theta = 0.1F;
@@ -142,7 +124,7 @@ static void test_auto_asks_an_adaptive_tree_where_nothing_else_finds_a_way(void)
 }
 
 static void test_several_goals_and_one_where_the_leg_begins(void) {
-    slit_hall(0.8);
+    open_slit_hall(0.8);
     for (int i = 0; i < PLANNERS; i++) {
         ask(planners[i]);
         request.num_goals = 3;
@@ -156,7 +138,7 @@ static void test_several_goals_and_one_where_the_leg_begins(void) {
 
 static void test_the_same_seed_gives_the_same_bytes_however_it_is_cut(void) {
     static uint8_t bytes[AISLE_ROUTE_BYTES];
-    slit_hall(0.8);
+    open_slit_hall(0.8);
     for (int i = 0; i < PLANNERS; i++) {
         ask(planners[i]);
         plan(UINT32_MAX / 2U);
@@ -173,7 +155,7 @@ static void test_the_same_seed_gives_the_same_bytes_however_it_is_cut(void) {
 }
 
 static void test_a_star_cut_short_by_the_budget_gives_the_best_path_so_far_and_says_so(void) {
-    slit_hall(1.2);
+    open_slit_hall(1.2);
     ask(AISLE_OPTIONS_RRT_STAR);
     request.options.work_units = 6000;
     plan(500);
