@@ -1,4 +1,3 @@
-#include "base/check.h"
 #include "plan/route_stages.h"
 
 _Static_assert(AISLE_BARRIER_POINTS <= AISLE_SEED_POINTS_MAX, "a leg holds the way");
@@ -70,19 +69,20 @@ aisle_status aisle_route_step_ga(aisle_route *self, uint32_t units) {
     }
     const uint32_t count = aisle_barrier_best(&self->barrier, self->points + leg->first);
     self->swarm_evals += self->barrier.ga.evals;
-    if (count == 0U) {
-        AISLE_ASSERT(is_papers(self)); // every way on a seed is free
+    if (count == 0U && is_papers(self)) {
         return aisle_route_refuse_unproved(self);
     }
     self->is_cut = self->is_cut || st == AISLE_BUSY;
-    leg->count = count;
-    leg->is_bred = true;
-    leg->tangent_radius = 0.0;
-    if (is_papers(self)) {
-        self->point_count += count;
-        aisle_route_next_leg(self);
-    } else {
+    if (count > 0U) { // else the budget was spent before the first: the seed stands
+        leg->count = count;
+        leg->is_bred = true;
+        leg->tangent_radius = 0.0;
+    }
+    if (leg->is_bred && !is_papers(self)) {
         aisle_route_begin_taut(self, count);
+    } else {
+        self->point_count += leg->count;
+        aisle_route_next_leg(self);
     }
     return AISLE_BUSY;
 }

@@ -97,6 +97,37 @@ static void test_a_question_asked_again_is_answered_from_memory(void) {
     (void)door_judge(again);
 }
 
+// A bred way is remembered as any other, under its own question.
+static void test_the_genetic_search_s_answer_is_remembered_until_its_ground_changes(void) {
+    aisle_query_msg query = question(5);
+    query.options.planner = AISLE_OPTIONS_GA;
+    query.options.step = 0.5F;
+    first = *door_ask(&query);
+    TEST_ASSERT_EQUAL_INT8(0, first.cached);
+    TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_GA, first.planner);
+    const aisle_path_msg *again = door_ask(&query);
+    TEST_ASSERT_EQUAL_INT8(1, again->cached);
+    assert_same_way(&first, again);
+    aisle_query_msg other = query; // not the same question
+    other.options.step = 0.8F;
+    TEST_ASSERT_EQUAL_INT8(0, door_ask(&other)->cached);
+    other = query;
+    other.options.seed = 9;
+    TEST_ASSERT_EQUAL_INT8(0, door_ask(&other)->cached);
+    other = query;
+    other.options.planner = AISLE_OPTIONS_AUTO;
+    TEST_ASSERT_EQUAL_INT8(0, door_ask(&other)->cached);
+    begin_patch();
+    const aisle_waypoint_msg *middle = &first.waypoints[first.num_waypoints / 2];
+    put_box(2, (hall_box){middle->x - 0.3, middle->y - 0.3, middle->x + 0.3, middle->y + 0.3});
+    hall_add(middle->x - 0.3, middle->y - 0.3, middle->x + 0.3, middle->y + 0.3);
+    send_patch();
+    const aisle_path_msg *anew = door_ask(&query);
+    TEST_ASSERT_EQUAL_INT8(0, anew->cached);
+    TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_GA, anew->planner);
+    (void)door_judge(anew);
+}
+
 // But for what names it and its flag the answer is what a planner without memory would send.
 static void test_a_remembered_answer_has_the_head_of_a_fresh_one(void) {
     aisle_query_msg query = question(5);
@@ -693,6 +724,7 @@ int main(int argc, char **argv) {
         return UNITY_END();
     }
     RUN_TEST(test_a_question_asked_again_is_answered_from_memory);
+    RUN_TEST(test_the_genetic_search_s_answer_is_remembered_until_its_ground_changes);
     RUN_TEST(test_a_remembered_answer_has_the_head_of_a_fresh_one);
     RUN_TEST(test_goals_in_any_order_are_remembered_with_their_order);
     RUN_TEST(test_a_query_s_answer_serves_a_goal_list);

@@ -63,9 +63,12 @@ static void open_hall(void) {
     }
 }
 
+static int8_t planner = AISLE_OPTIONS_AUTO;
+
 static void plan_by(int8_t objective, double x0, double y0, double x1, double y1, uint32_t slice) {
     request = (aisle_request){.is_query = true, .query_id = 5, .map_id = 1, .num_goals = 1};
     request.options.objective = objective;
+    request.options.planner = planner;
     request.start = (aisle_goal_msg){.x = x0, .y = y0, .tolerance_theta = 4.0F};
     request.goals[0] = (aisle_goal_msg){.id = 11, .x = x1, .y = y1, .tolerance_theta = 4.0F};
     head = (aisle_path_msg){.boot_id = 3, .path_revision = 8, .utime = 100, .t0_utime = 100};
@@ -123,6 +126,7 @@ static void two_aisles(void) {
 
 void setUp(void) {
     zone_count = 0;
+    planner = AISLE_OPTIONS_AUTO;
     hall_disc(0.4, 0.1F);
     two_aisles();
 }
@@ -153,6 +157,21 @@ static void test_all_objectives_and_bodies_obey(void) {
             take_answer();
             zone_count = 0;
         }
+    }
+}
+
+// Narrow enough for the search to reach across it: a way that cuts its corner would be the shorter one.
+static void test_the_genetic_search_obeys(void) {
+    planner = AISLE_OPTIONS_GA;
+    hall_begin(20.0, 8.0);
+    (void)directed(0.0, 6.0, 3.2, 14.0, 4.8);
+    for (int8_t objective = AISLE_OPTIONS_SAFEST; objective <= AISLE_OPTIONS_PAPER; objective++) {
+        open_hall();
+        plan_by(objective, 18.0, 4.1, 2.0, 4.1, 5000);
+        take_answer();
+        TEST_ASSERT_TRUE(route.space.zone_room > 0.0);            // for what corners are blended by
+        TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_GA, answer.planner); // not its seed, where its own was disproved
+        TEST_ASSERT_TRUE((double)answer.length > 16.05);
     }
 }
 
@@ -353,6 +372,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_one_way_aisle_is_driven_along_and_gone_round_the_other_way);
     RUN_TEST(test_all_objectives_and_bodies_obey);
+    RUN_TEST(test_the_genetic_search_obeys);
     RUN_TEST(test_a_directed_zone_against_the_only_way_is_the_cause_by_name_and_place);
     RUN_TEST(test_the_zone_is_named_for_long_bodies_too);
     RUN_TEST(test_one_way_aisles_that_lead_to_each_other_are_both_the_cause_and_the_first_is_named);
