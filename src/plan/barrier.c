@@ -35,29 +35,37 @@ static bool station_free(aisle_barrier *self, uint32_t i) {
            aisle_space_turn_free(self->space, self->way[i], &self->units);
 }
 
-static void shrink(aisle_barrier *self, uint32_t i, double by) {
-    self->offset[i] *= by;
-    self->way[i] = aisle_vec2_add(self->base[i], aisle_vec2_scale(self->across[i], self->offset[i]));
+// Pieces at a station that moves are to be looked at again.
+static void shrink(aisle_barrier *self, uint32_t i, double by, bool *is_free) {
+    if (self->offset[i] != 0.0) {
+        self->offset[i] *= by;
+        self->way[i] = aisle_vec2_add(self->base[i], aisle_vec2_scale(self->across[i], self->offset[i]));
+        is_free[i - 1U] = is_free[i] = false;
+    }
 }
 
 // Once through: offsets of pieces that are not free times `by`. True: there was none.
-static bool repair_once(aisle_barrier *self, double by) {
-    bool is_free = true;
+static bool repair_once(aisle_barrier *self, double by, bool *is_free) {
+    bool all = true;
     for (uint32_t i = 0; i + 1U < self->count; i++) {
-        const bool is_bent = self->offset[i] != 0.0 || self->offset[i + 1U] != 0.0;
-        if (is_bent && !(station_free(self, i) && station_free(self, i + 1U) && piece_free(self, i))) {
-            shrink(self, i, by);
-            shrink(self, i + 1U, by);
-            is_free = false;
+        if (is_free[i] || (self->offset[i] == 0.0 && self->offset[i + 1U] == 0.0)) {
+            continue; // as it lies on the seed
+        }
+        is_free[i] = station_free(self, i) && station_free(self, i + 1U) && piece_free(self, i);
+        if (!is_free[i]) {
+            shrink(self, i, by, is_free);
+            shrink(self, i + 1U, by, is_free);
+            all = false;
         }
     }
-    return is_free;
+    return all;
 }
 
 // Ends: each round after the halvings sets an offset to 0 that was not, or is the last.
 static void repair(aisle_barrier *self) {
+    bool is_free[AISLE_BARRIER_POINTS] = {false}; // piece by piece: looked at as it lies
     for (uint32_t round = 0; round < AISLE_BARRIER_HALVINGS + AISLE_BARRIER_POINTS; round++) {
-        if (repair_once(self, round < AISLE_BARRIER_HALVINGS ? 0.5 : 0.0)) {
+        if (repair_once(self, round < AISLE_BARRIER_HALVINGS ? 0.5 : 0.0, is_free)) {
             return;
         }
     }
