@@ -14,18 +14,12 @@ static void begin(aisle_route *self) {
 // ---- the paper's form, in place of all searches
 
 void aisle_route_begin_ga_paper_leg(aisle_route *self) {
-    aisle_leg *leg = &self->legs[self->leg];
     const aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
     const aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
-    *leg = (aisle_leg){.first = self->point_count,
-                       .count = 1,
-                       .mode = AISLE_SPACE_FREE_TURN,
-                       .seed_value = -1.0,
-                       .swarm_value = -1.0,
-                       .bound = aisle_vec2_distance(from, to),
-                       .piece_first = self->piece_count};
+    aisle_leg *leg = aisle_route_take_leg(self);
+    leg->count = 1;
+    leg->mode = AISLE_SPACE_FREE_TURN;
     aisle_route_begin_zones(self);
-    aisle_route_take_heading(self);
     aisle_space_begin(&self->space, self->layout, self->vehicle, leg->mode);
     begin(self);
     if (aisle_barrier_start_paper(&self->barrier, &self->space, &self->request.options, from, to) != AISLE_OK) {

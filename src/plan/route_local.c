@@ -64,17 +64,12 @@ static void begin_search(aisle_route *self) {
 }
 
 static void begin_leg(aisle_route *self) {
-    aisle_leg *leg = &self->legs[self->leg];
-    const aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
-    const aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
-    *leg = (aisle_leg){
-        .first = self->point_count, .seed_value = -1.0, .swarm_value = -1.0, .bound = aisle_vec2_distance(from, to)};
-    aisle_route_take_heading(self);
+    aisle_leg *leg = aisle_route_take_leg(self);
     self->stage = AISLE_ROUTE_LOCAL;
     self->local_is_there = false;
     if (leg->bound < 1e-6) {
         leg->count = 1;
-        self->points[self->point_count++] = from;
+        self->points[self->point_count++] = aisle_route_place(aisle_route_leg_start(self, self->leg));
         self->local_is_there = true;
     } else {
         begin_search(self);

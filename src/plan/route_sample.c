@@ -95,16 +95,8 @@ static void begin_search(aisle_route *self) {
 }
 
 void aisle_route_begin_sample_leg(aisle_route *self) {
-    aisle_leg *leg = &self->legs[self->leg];
-    const aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
-    const aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
-    *leg = (aisle_leg){.first = self->point_count,
-                       .seed_value = -1.0,
-                       .swarm_value = -1.0,
-                       .bound = aisle_vec2_distance(from, to),
-                       .piece_first = self->piece_count};
+    (void)aisle_route_take_leg(self);
     aisle_route_begin_zones(self);
-    aisle_route_take_heading(self);
     self->sample.is_spare = false;
     begin_search(self);
 }

@@ -113,6 +113,19 @@ static void begin_leg(aisle_route *self) {
     }
 }
 
+aisle_leg *aisle_route_take_leg(aisle_route *self) {
+    aisle_leg *leg = &self->legs[self->leg];
+    const aisle_vec2 from = aisle_route_place(aisle_route_leg_start(self, self->leg));
+    const aisle_vec2 to = aisle_route_place(&self->request.goals[self->leg]);
+    *leg = (aisle_leg){.first = self->point_count,
+                       .seed_value = -1.0,
+                       .swarm_value = -1.0,
+                       .bound = aisle_vec2_distance(from, to),
+                       .piece_first = self->piece_count};
+    aisle_route_take_heading(self);
+    return leg;
+}
+
 void aisle_route_begin_legs(aisle_route *self) {
     self->leg = 0;
     self->point_count = 0;

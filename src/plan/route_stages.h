@@ -132,6 +132,8 @@ aisle_status aisle_route_step_manoeuvre(aisle_route *self, uint32_t units);
 // Begin the first leg; go on to the next leg or to BUILD.
 void aisle_route_begin_legs(aisle_route *self);
 void aisle_route_next_leg(aisle_route *self);
+// The leg under way, of which nothing is known but the beeline and the heading it begins with.
+aisle_leg *aisle_route_take_leg(aisle_route *self);
 // Starts the seed of the leg under way with the first attempt from n on that finds its ends; none does: WHY.
 void aisle_route_begin_seed(aisle_route *self, uint32_t n);
 // No way was found: the first way of all asks why, others are given up.

@@ -65,17 +65,22 @@ HALL_UNUSED void hall_one_way(double direction, double x0, double y0, double x1,
 // The hall as a message: box i has id i + 1.
 HALL_UNUSED const aisle_layout_msg *hall_message(int32_t revision, float resolution);
 
-// Puts the boxes in force; carves the layout from the arena first.
-HALL_UNUSED void hall_open(aisle_arena *arena, float resolution) {
+// Puts a layout of one part in force; carves hall_layout from the arena first.
+HALL_UNUSED void hall_open_message(aisle_arena *arena, const aisle_layout_msg *msg) {
     memset(&hall_layout, 0, sizeof hall_layout);
     aisle_layout_carve(&hall_layout, arena, &hall_limits);
     TEST_ASSERT_FALSE(arena->overflow);
     aisle_refusal why;
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_part(&hall_layout, hall_message(1, resolution), &why));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_part(&hall_layout, msg, &why));
     aisle_layout_commit(&hall_layout);
     while (aisle_layout_build(&hall_layout, 1000) == AISLE_BUSY) {
     }
     TEST_ASSERT_TRUE(aisle_layout_is_in_force(&hall_layout));
+}
+
+// Puts the boxes in force.
+HALL_UNUSED void hall_open(aisle_arena *arena, float resolution) {
+    hall_open_message(arena, hall_message(1, resolution));
 }
 
 HALL_UNUSED void hall_disc(double radius, float margin) {
@@ -194,6 +199,20 @@ HALL_UNUSED bool hall_step_obeys(double ax, double ay, double bx, double by) {
     return true;
 }
 
+// Count and checksum of a layout of one part whose polygons were changed.
+HALL_UNUSED void hall_seal(aisle_layout_msg *msg) {
+    uint32_t crc = 0;
+    msg->total_polygons = msg->num_polygons;
+    for (int16_t i = 0; i < msg->num_polygons; i++) {
+        uint8_t bytes[512];
+        size_t size = 0;
+        TEST_ASSERT_EQUAL(AISLE_OK,
+                          aisle_msg_encode_body(AISLE_MSG_POLYGON, &msg->polygons[i], bytes, sizeof bytes, &size));
+        crc = aisle_crc32(crc, bytes, size);
+    }
+    msg->crc32 = (int32_t)crc;
+}
+
 HALL_UNUSED const aisle_layout_msg *hall_message(int32_t revision, float resolution) {
     memset(&hall_msg, 0, sizeof hall_msg);
     hall_msg.map_id = 1;
@@ -203,8 +222,6 @@ HALL_UNUSED const aisle_layout_msg *hall_message(int32_t revision, float resolut
     hall_msg.y_max = hall_height;
     hall_msg.resolution = resolution;
     hall_msg.num_polygons = (int16_t)(hall_count + hall_one_way_count);
-    hall_msg.total_polygons = hall_msg.num_polygons;
-    uint32_t crc = 0;
     for (int i = 0; i < hall_msg.num_polygons; i++) {
         const hall_box *b = i < hall_count ? &hall_boxes[i] : &hall_one_ways[i - hall_count];
         const double v[4][2] = {{b->x0, b->y0}, {b->x1, b->y0}, {b->x1, b->y1}, {b->x0, b->y1}};
@@ -216,12 +233,8 @@ HALL_UNUSED const aisle_layout_msg *hall_message(int32_t revision, float resolut
             polygon->kind = AISLE_POLYGON_DIRECTED;
             polygon->direction = (float)hall_directions[i - hall_count];
         }
-        uint8_t bytes[512];
-        size_t size = 0;
-        TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_encode_body(AISLE_MSG_POLYGON, polygon, bytes, sizeof bytes, &size));
-        crc = aisle_crc32(crc, bytes, size);
     }
-    hall_msg.crc32 = (int32_t)crc;
+    hall_seal(&hall_msg);
     return &hall_msg;
 }
 #endif

@@ -2,13 +2,10 @@
 #include "plan/route.h"
 #include "plan/zones.h"
 
-#include "door.h"
+#include "asked_route.h"
 
 enum { SEEDS = 24 };
 
-static aisle_route route;
-static aisle_request request;
-static aisle_path_msg head, answer;
 static aisle_polygon_msg zones[8];
 static int zone_count;
 
@@ -44,37 +41,17 @@ static void open_hall(void) {
     for (int i = 0; i < zone_count; i++) {
         layout.polygons[layout.num_polygons++] = zones[i];
     }
-    layout.total_polygons = layout.num_polygons;
-    uint32_t crc = 0;
-    for (int i = 0; i < layout.num_polygons; i++) {
-        uint8_t bytes[512];
-        size_t size = 0;
-        TEST_ASSERT_EQUAL(AISLE_OK,
-                          aisle_msg_encode_body(AISLE_MSG_POLYGON, &layout.polygons[i], bytes, sizeof bytes, &size));
-        crc = aisle_crc32(crc, bytes, size);
-    }
-    layout.crc32 = (int32_t)crc;
-    memset(&hall_layout, 0, sizeof hall_layout);
-    aisle_layout_carve(&hall_layout, &arena, &hall_limits);
-    aisle_refusal why;
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_part(&hall_layout, &layout, &why));
-    aisle_layout_commit(&hall_layout);
-    while (aisle_layout_build(&hall_layout, 1000) == AISLE_BUSY) {
-    }
+    hall_seal(&layout);
+    hall_open_message(&arena, &layout);
 }
 
 static int8_t planner = AISLE_OPTIONS_AUTO;
 
 static void plan_by(int8_t objective, double x0, double y0, double x1, double y1, uint32_t slice) {
-    request = (aisle_request){.is_query = true, .query_id = 5, .map_id = 1, .num_goals = 1};
+    route_ask(planner, x0, y0, x1, y1);
     request.options.objective = objective;
-    request.options.planner = planner;
-    request.start = (aisle_goal_msg){.x = x0, .y = y0, .tolerance_theta = 4.0F};
-    request.goals[0] = (aisle_goal_msg){.id = 11, .x = x1, .y = y1, .tolerance_theta = 4.0F};
-    head = (aisle_path_msg){.boot_id = 3, .path_revision = 8, .utime = 100, .t0_utime = 100};
-    aisle_route_start(&route, &hall_layout, &hall_vehicle, &request, &head);
-    while (aisle_route_step(&route, slice) != AISLE_OK) {
-    }
+    route_begin();
+    route_finish(slice);
 }
 
 static void plan(double x0, double y0, double x1, double y1) {
@@ -101,10 +78,7 @@ static double inside(const aisle_polygon_msg *p, bool against) {
 }
 
 static void take_answer(void) {
-    const aisle_proof *proof = aisle_route_answer(&route);
-    TEST_ASSERT_NOT_NULL(proof);
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_msg_decode(AISLE_MSG_PATH, proof->bytes, proof->size, &answer, NULL));
-    (void)door_judge(&answer);
+    (void)route_proof();
     for (int i = 0; i < zone_count; i++) {
         if (zones[i].kind == AISLE_POLYGON_DIRECTED) {
             TEST_ASSERT_TRUE(inside(&zones[i], true) <= 1e-9);
@@ -113,8 +87,7 @@ static void take_answer(void) {
 }
 
 static void refused_with(int16_t cause, int32_t id) {
-    TEST_ASSERT_NULL(aisle_route_answer(&route));
-    TEST_ASSERT_EQUAL_INT16(cause, route.cause.cause);
+    route_refused(cause);
     TEST_ASSERT_EQUAL_INT32(id, route.cause.id);
 }
 

@@ -29,23 +29,8 @@ static void add_box(int8_t kind, float value, double direction, double x0, doubl
 
 static void build(void) {
     aisle_arena arena = hall_arena(24U << 20);
-    layout.total_polygons = layout.num_polygons;
-    uint32_t crc = 0;
-    for (int i = 0; i < layout.num_polygons; i++) {
-        uint8_t bytes[512];
-        size_t size = 0;
-        TEST_ASSERT_EQUAL(AISLE_OK,
-                          aisle_msg_encode_body(AISLE_MSG_POLYGON, &layout.polygons[i], bytes, sizeof bytes, &size));
-        crc = aisle_crc32(crc, bytes, size);
-    }
-    layout.crc32 = (int32_t)crc;
-    memset(&hall_layout, 0, sizeof hall_layout);
-    aisle_layout_carve(&hall_layout, &arena, &hall_limits);
-    aisle_refusal why;
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_layout_take_part(&hall_layout, &layout, &why));
-    aisle_layout_commit(&hall_layout);
-    while (aisle_layout_build(&hall_layout, 1000) == AISLE_BUSY) {
-    }
+    hall_seal(&layout);
+    hall_open_message(&arena, &layout);
 }
 
 static aisle_objective objective_of(int8_t kind) {
