@@ -2,6 +2,7 @@
 // against a lower bound by 1-trees. None of it shares code with src/.
 #include "algo/order.h" // first: proves that the header stands alone
 
+#include "cases.h"
 #include "unity.h"
 
 #include <float.h>
@@ -207,7 +208,7 @@ static double bound_by_trees(double known) {
 static void test_up_to_eight_places_no_permutation_is_cheaper(void) {
     for (uint32_t n = 1; n <= 8; n++) {
         for (int what = 0; what < KINDS; what++) {
-            for (uint64_t seed = 0; seed < (n < 8 ? 12U : 3U); seed++) {
+            for (uint64_t seed = 0; seed < CASES(n < 8 ? 12U : 3U); seed++) {
                 make(n, (kind)what, seed);
                 aisle_status st = run(UINT32_MAX);
                 long double least = least_of_all();
@@ -377,7 +378,7 @@ static long double cheapest_neighbour(void) {
 }
 
 static void test_no_move_gains_on_the_order_found_if_costs_are_even(void) {
-    for (uint64_t seed = 0; seed < 12; seed++) {
+    for (uint64_t seed = 0; seed < CASES(12); seed++) {
         make(seed % 2U == 0U ? 20 : 33, seed % 3U == 0U ? CLUSTERS : PLANE, 300U + seed);
         cfg.kicks = seed < 6U ? 0U : 60U;
         TEST_ASSERT_EQUAL(AISLE_OK, run(UINT32_MAX));

@@ -211,8 +211,7 @@ static void test_every_way_looked_at_is_free_among_posts(void) {
             }
             ways++;
         }
-        TEST_ASSERT_TRUE(barrier.ga.evals == aisle_ga_evals_max(&barrier.ga.cfg) ||
-                         barrier.ga.evals - barrier.ga.last_improvement == AISLE_BARRIER_STALL);
+        TEST_ASSERT_TRUE(barrier.ga.evals - barrier.ga.last_improvement <= AISLE_BARRIER_STALL);
     }
     TEST_ASSERT_GREATER_THAN_UINT32(1000, ways);
 }

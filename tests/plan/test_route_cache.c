@@ -1,5 +1,6 @@
 #include "plan/planner_state.h"
 
+#include "cases.h"
 #include "door.h"
 
 #include <stdio.h>
@@ -598,7 +599,7 @@ static tally run(const aisle_vehicle_msg *vehicle, uint64_t seed, int8_t objecti
     tally sum = {0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0};
     open_both(vehicle, seed, objective);
     aisle_rng rng = aisle_rng_seed(seed + 1000);
-    for (int i = 0; i < patches; i++) {
+    for (int i = 0; i < CASES(patches); i++) {
         if (i > 0) {
             random_patch(&rng);
         }
@@ -621,10 +622,10 @@ static void test_repaired_answers_are_proved_and_within_their_slack_of_planned_o
     const aisle_vehicle_msg body = {
         .vehicle_revision = 1, .num_vertices = 4, .footprint = {{-1.2, -0.5}, {1.2, -0.5}, {1.2, 0.5}, {-1.2, 0.5}}};
     tally sum = run(&body, 7, AISLE_OPTIONS_SHORTEST, 120);
-    TEST_ASSERT_GREATER_THAN_INT(5, sum.repaired);
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(LEAST(6), sum.repaired);
     TEST_ASSERT_TRUE(sum.worst_repair <= 1.0 + AISLE_CACHE_REPAIR + 1e-3);
     sum = run(&disc, 8, AISLE_OPTIONS_SAFEST, 60);
-    TEST_ASSERT_GREATER_THAN_INT(3, sum.repaired);
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(LEAST(4), sum.repaired);
     TEST_ASSERT_TRUE(sum.units_repair < sum.units_fresh);
 }
 
@@ -684,7 +685,7 @@ static void test_a_long_detour_or_freed_ground_is_planned_anew(void) {
 static void test_kept_answers_of_a_disc_are_as_short_as_planned_ones(void) {
     const aisle_vehicle_msg disc = {.vehicle_revision = 1, .footprint_radius = 0.4F, .margin = 0.1F};
     tally sum = run(&disc, 1, AISLE_OPTIONS_SHORTEST, 400);
-    TEST_ASSERT_GREATER_THAN_INT(60, sum.hits);
+    TEST_ASSERT_GREATER_THAN_INT(LEAST(60), sum.hits);
     TEST_ASSERT_TRUE(sum.worst <= 1.0 + 1e-3);
 }
 
@@ -693,10 +694,10 @@ static void test_kept_answers_of_other_bodies_and_objectives_are_proved_and_good
     const aisle_vehicle_msg body = {.vehicle_revision = 1};
     static const int8_t objectives[] = {AISLE_OPTIONS_SAFEST, AISLE_OPTIONS_FASTEST, AISLE_OPTIONS_LEAST_ENERGY};
     tally sum = run(&body, 2, AISLE_OPTIONS_SHORTEST, 100);
-    TEST_ASSERT_GREATER_THAN_INT(12, sum.hits);
+    TEST_ASSERT_GREATER_THAN_INT(LEAST(12), sum.hits);
     for (uint64_t i = 0; i < 3; i++) {
         sum = run(&disc, 3 + i, objectives[i], 60);
-        TEST_ASSERT_GREATER_THAN_INT(4, sum.hits);
+        TEST_ASSERT_GREATER_THAN_INT(LEAST(4), sum.hits);
     }
 }
 

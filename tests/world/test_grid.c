@@ -1,5 +1,6 @@
 #include "world/grid.h"
 
+#include "cases.h"
 #include "gen.h"
 #include "unity.h"
 
@@ -251,7 +252,7 @@ static void check_marks(const aisle_convex *shape) {
 
 static void test_marked_cells_are_those_the_closed_rounded_shape_touches(void) {
     aisle_rng rng = aisle_rng_seed(31);
-    for (uint32_t trial = 0; trial < 600U; trial++) {
+    for (uint32_t trial = 0; trial < CASES(600U); trial++) {
         const double far = trial % 5U == 0U ? 9.9e4 : 0.0; // some far from the origin
         const aisle_lattice l = {far - 1.0, -2.0, 0.05, 1U + aisle_rng_below(&rng, 30), 1U + aisle_rng_below(&rng, 30)};
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_grid_begin(&grid, &l));
@@ -268,7 +269,8 @@ static void test_marked_cells_are_those_the_closed_rounded_shape_touches(void) {
 
 static void test_shapes_on_cell_borders_and_corners_mark_all_they_touch(void) {
     aisle_rng rng = aisle_rng_seed(32);
-    for (uint32_t trial = 0; trial < 2000U; trial++) { // whole and half cells; touching a border is touching both cells
+    for (uint32_t trial = 0; trial < CASES(2000U); trial++) {
+        // whole and half cells; touching a border is touching both cells
         begin(12, 12);
         aisle_vec2 v[4];
         const double x = 0.5 * aisle_rng_below(&rng, 24);
@@ -307,7 +309,7 @@ static uint32_t clip(const aisle_vec2 *in, uint32_t n, aisle_vec2 normal, double
 static void test_marks_agree_with_clipping_the_polygon_to_every_cell(void) {
     aisle_rng rng = aisle_rng_seed(33);
     uint32_t marks = 0;
-    for (uint32_t trial = 0; trial < 1000U; trial++) {
+    for (uint32_t trial = 0; trial < CASES(1000U); trial++) {
         begin(25, 20);
         aisle_vec2 v[10];
         gen_polygon(&rng, aisle_vec2_of(gen_in(&rng, -3, 28), gen_in(&rng, -3, 23)), gen_in(&rng, 0.1, 12),

@@ -1,6 +1,7 @@
 #include "world/grid_window.h"
 
 #include "base/rng.h"
+#include "cases.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -97,7 +98,7 @@ static void check_edits(uint64_t seed, uint32_t w, uint32_t h, uint32_t per_mill
 
 static void test_any_edit_of_small_lattices_gives_the_field_of_a_fresh_build(void) {
     aisle_rng rng = aisle_rng_seed(401);
-    for (uint32_t trial = 0; trial < 300U; trial++) {
+    for (uint32_t trial = 0; trial < CASES(300U); trial++) {
         const uint32_t w = 1U + aisle_rng_below(&rng, 70);
         const uint32_t h = 1U + aisle_rng_below(&rng, 70);
         check_edits(402U + trial, w, h, trial % 4U == 0U ? 0U : 20000U, 20);
