@@ -59,18 +59,23 @@ class Daemon:
         return self.statuses[-1][1]
 
     def fresh_status(self) -> status_t:
-        """One that was sent after now; what waits in the queue is older."""
-        while self.bus.lcm.handle_timeout(0) > 0:
-            pass
+        """One that was sent after now."""
+        self.hear_all()
         before = len(self.statuses)
         assert self.bus.spin(PATIENCE, lambda: len(self.statuses) >= before + 2)
         return self.status
+
+    def hear_all(self) -> None:
+        """What waits in the queue is older than now."""
+        while self.bus.lcm.handle_timeout(0) > 0:
+            pass
 
     def wait(self, condition, seconds: float = PATIENCE) -> bool:  # noqa: ANN001
         return self.bus.spin(seconds, condition)
 
     def counter(self, ident: int) -> int:
         """From a _DIAG sent after now."""
+        self.hear_all()
         before = len(self.diags)
         assert self.bus.spin(PATIENCE, lambda: len(self.diags) > before + 1)
         diag = self.diags[-1][1]
