@@ -3,9 +3,11 @@
 #include "base/check.h"
 #include "base/vec.h"
 
+#include <stdbool.h>
 #include <string.h>
 
-#define BISECTIONS 60U // of [0, 1] down to rounding
+#define ROOT_STEPS 120U // Newton's halve the step before them at least, others the interval
+#define ROOT_STEP_MIN 1e-16
 
 double aisle_poly_value(const double *c, uint32_t degree, double r) {
     AISLE_ASSERT(degree <= AISLE_POLY_DEGREE_MAX);
@@ -30,17 +32,35 @@ uint32_t aisle_poly_derivative(const double *c, uint32_t degree, double *out) {
 
 // ---- roots
 
-// The value at `lo` has the sign of `rising` negated; at `hi` it has not.
-static double bisect(const double *c, uint32_t degree, double lo, double hi, double at_lo) {
-    for (uint32_t i = 0; i < BISECTIONS; i++) {
-        const double middle = 0.5 * (lo + hi), value = aisle_poly_value(c, degree, middle);
-        if ((value < 0.0) == (at_lo < 0.0)) {
-            lo = middle;
-        } else {
-            hi = middle;
-        }
+// Value and derivative at x by one Horner's rule.
+static double value_and_slope(const double *c, uint32_t degree, double x, double *slope) {
+    double value = c[degree];
+    *slope = 0.0;
+    for (uint32_t i = degree; i > 0U; i--) {
+        *slope = *slope * x + value;
+        value = value * x + c[i - 1U];
     }
-    return 0.5 * (lo + hi);
+    return value;
+}
+
+// The value at `lo` has the sign of `at_lo`; at `hi` it has not.
+static double root_between(const double *c, uint32_t degree, double lo, double hi, double at_lo) {
+    double x = 0.5 * (lo + hi), step = hi - lo;
+    for (uint32_t i = 0; i < ROOT_STEPS && step > ROOT_STEP_MIN; i++) {
+        double slope;
+        const double value = value_and_slope(c, degree, x, &slope);
+        if ((value < 0.0) == (at_lo < 0.0)) {
+            lo = x;
+        } else {
+            hi = x;
+        }
+        const double by = value / slope; // slope 0: no number that passes below
+        const bool is_newton = fabs(by) < 0.5 * step && x - by >= lo && x - by <= hi;
+        const double next = is_newton ? x - by : 0.5 * (lo + hi);
+        step = fabs(next - x);
+        x = next;
+    }
+    return x;
 }
 
 // Sign changes of c between neighbours of 0, stop[count], 1; c is monotone there.
@@ -50,7 +70,7 @@ static uint32_t roots_between(const double *c, uint32_t degree, const double *st
     for (uint32_t i = 0; i <= count; i++) {
         const double to = i < count ? stop[i] : 1.0, at_to = aisle_poly_value(c, degree, to);
         if ((at_from < 0.0 && at_to >= 0.0) || (at_from > 0.0 && at_to <= 0.0)) {
-            roots[found++] = bisect(c, degree, from, to, at_from);
+            roots[found++] = root_between(c, degree, from, to, at_from);
         }
         from = to;
         at_from = at_to;

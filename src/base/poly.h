@@ -16,13 +16,13 @@ double aisle_poly_value(const double *c, uint32_t degree, double r);
 uint32_t aisle_poly_derivative(const double *c, uint32_t degree, double *out);
 
 // Places in [0, 1] where the polynomial changes its sign, rising, to roots[degree]; returns how many. Between the zeros of
-// the derivative it is monotone, so each sign change there is found by bisection: from the linear derivative upwards, no
-// start values, no failure. Each to within 1e-15; a zero that is only touched may be told, too. O(d^2) bisections of 60
-// steps at most.
+// the derivative it is monotone, so each sign change there is found by Newton's steps held in by bisection (Press et al. 2007,
+// "Numerical Recipes", ch. 9.4): from the linear derivative upwards, no start values, no failure. Each to within 1e-15; a zero that
+// is only touched may be told, too. O(d^2) roots of 120 steps at most, about 6 on the average.
 uint32_t aisle_poly_roots(const double *c, uint32_t degree, double *roots);
 
 // Greatest |value| on [0, 1]: at an end or where the derivative changes its sign. Relative error 1e-12 but for
-// cancellation among the coefficients. O(d^2) bisections.
+// cancellation among the coefficients. As roots().
 double aisle_poly_peak(const double *c, uint32_t degree);
 
 // Least and greatest value on [0, 1], as peak().

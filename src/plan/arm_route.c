@@ -16,6 +16,8 @@ void aisle_arm_route_carve(aisle_arm_route *self, aisle_arena *arena, uint32_t n
     aisle_rrt_carve(self != NULL ? &self->tree : NULL, arena, nodes, AISLE_ARM_LINKS);
     aisle_arm_world_carve(self != NULL ? &self->world : NULL, arena, AISLE_ARM_BLOCKS);
     aisle_arm_search_carve(self != NULL ? &self->search : NULL, arena);
+    void *time = aisle_arena_take(arena, 1U, sizeof(aisle_arm_time));
+    aisle_arm_time_carve(self != NULL ? (aisle_arm_time *)time : NULL, arena);
     void *goals = aisle_arena_take(arena, 1U, sizeof(aisle_arm_solutions));
     void *plan = aisle_arena_take(arena, 1U, sizeof(aisle_arm_plan));
     void *path = aisle_arena_take(arena, 1U, sizeof(aisle_arm_path_msg));
@@ -23,6 +25,7 @@ void aisle_arm_route_carve(aisle_arm_route *self, aisle_arena *arena, uint32_t n
     void *way = aisle_arena_take(arena, (size_t)nodes + 1U, sizeof(uint32_t));
     void *bytes = aisle_arena_take(arena, AISLE_ARM_PATH_BYTES, 1U);
     if (self != NULL) {
+        self->time = (aisle_arm_time *)time;
         self->goals = (aisle_arm_solutions *)goals;
         self->plan = (aisle_arm_plan *)plan;
         self->path = (aisle_arm_path_msg *)path;
@@ -189,9 +192,10 @@ static aisle_status check(aisle_arm_route *self) {
 
 // ---- ways
 
-static void begin_build(aisle_arm_route *self, int8_t planner) {
+static void begin_time(aisle_arm_route *self, int8_t planner) {
     self->path->planner = planner;
-    self->stage = AISLE_ARM_STAGE_BUILD;
+    self->timed = 0;
+    self->stage = AISLE_ARM_STAGE_TIME;
 }
 
 static void begin_search(aisle_arm_route *self) {
@@ -245,17 +249,17 @@ static aisle_status direct(aisle_arm_route *self) {
     const double *to = self->goals->q[self->at];
     self->plan->count = 0;
     if (is_same(self, to)) {
-        begin_build(self, AISLE_OPTIONS_AUTO);
+        begin_time(self, AISLE_OPTIONS_AUTO);
         return AISLE_BUSY;
     }
     aisle_arm_piece *piece = &self->plan->piece[0];
     aisle_arm_piece_of(self->arm.links, self->start, to, NULL, piece);
     const bool is_skipped = is_tree_named(self) || options_of(self)->objective == AISLE_OPTIONS_PAPER;
-    if (!is_skipped && aisle_arm_world_free(&self->world, piece, &self->spent, NULL)) {
+    if (!is_skipped && aisle_arm_free_line(&self->world, self->start, to, &self->spent)) {
         self->plan->count = 1;
         self->has_direct = true;
         if (is_done_with(self, piece)) {
-            begin_build(self, AISLE_OPTIONS_AUTO);
+            begin_time(self, AISLE_OPTIONS_AUTO);
         } else {
             begin_search(self);
         }
@@ -295,11 +299,11 @@ static aisle_status search(aisle_arm_route *self, uint32_t units) {
     }
     if (aisle_arm_search_best(&self->search, &self->plan->piece[0])) {
         self->plan->count = 1;
-        begin_build(self, self->search.swarm ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_GA);
+        begin_time(self, self->search.swarm ? AISLE_OPTIONS_PSO : AISLE_OPTIONS_GA);
     } else if (self->has_direct) { // ended before it had looked at it
         self->plan->count = 1;
         aisle_arm_piece_of(self->arm.links, self->start, self->goals->q[self->at], NULL, &self->plan->piece[0]);
-        begin_build(self, AISLE_OPTIONS_AUTO);
+        begin_time(self, AISLE_OPTIONS_AUTO);
     } else if (self->spent < limit && next_goal(self)) {
         begin_search(self);
     } else if (is_search_named(self)) {
@@ -345,7 +349,7 @@ static aisle_status pull(aisle_arm_route *self) {
     }
     aisle_arm_piece *piece = &self->plan->piece[self->plan->count];
     aisle_arm_piece_of(self->arm.links, from, to, NULL, piece);
-    if (self->node_to > self->node_at + 1U && !aisle_arm_world_free(&self->world, piece, &self->spent, NULL)) {
+    if (self->node_to > self->node_at + 1U && !aisle_arm_free_line(&self->world, from, to, &self->spent)) {
         self->node_to--;
         return AISLE_BUSY;
     }
@@ -353,7 +357,36 @@ static aisle_status pull(aisle_arm_route *self) {
     self->node_at = self->node_to;
     self->node_to = self->node_count - 1U;
     if (self->node_at == self->node_to) {
+        begin_time(self, self->path->planner);
+    }
+    return AISLE_BUSY;
+}
+
+// ---- time
+
+// The paper's search goes on with the piece under way, if there is one.
+static void begin_paper_time(aisle_arm_route *self) {
+    const aisle_options_msg *options = options_of(self);
+    if (options->objective == AISLE_OPTIONS_PAPER && self->timed < self->plan->count) {
+        aisle_arm_time_start(self->time, &self->arm, &self->dynamics, &self->plan->piece[self->timed],
+                             (uint64_t)(int64_t)options->seed);
+        self->timed++;
+    } else {
         self->stage = AISLE_ARM_STAGE_BUILD;
+    }
+}
+
+static aisle_status time(aisle_arm_route *self, uint32_t units) {
+    uint32_t joint = 0;
+    if (self->timed == 0U) {
+        if (!aisle_arm_plan_time(self->plan, &self->arm, &self->dynamics, &joint)) {
+            return end(self, AISLE_STATUS_KINEMATIC, (int32_t)joint + 1, 0.0);
+        }
+        self->spent += AISLE_ARM_UNITS * self->plan->count;
+        begin_paper_time(self);
+    } else if (aisle_arm_time_step(self->time, units, &self->spent, &self->plan->duration[self->timed - 1U]) !=
+               AISLE_BUSY) {
+        begin_paper_time(self);
     }
     return AISLE_BUSY;
 }
@@ -361,10 +394,6 @@ static aisle_status pull(aisle_arm_route *self) {
 // ---- build and proof
 
 static aisle_status build(aisle_arm_route *self) {
-    uint32_t joint = 0;
-    if (!aisle_arm_plan_time(self->plan, &self->arm, &self->dynamics, &joint)) {
-        return end(self, AISLE_STATUS_KINEMATIC, (int32_t)joint + 1, 0.0);
-    }
     if (aisle_arm_compose(self->plan, &self->world, &self->dynamics, self->start, self->stretch, self->path) !=
         AISLE_OK) {
         return end(self, AISLE_STATUS_LIMIT, LIMIT_WAYPOINTS, (double)AISLE_ARM_PATH_MAX_WAYPOINTS);
@@ -430,6 +459,8 @@ static aisle_status step(aisle_arm_route *self, uint32_t units) {
         return tree(self, units);
     case AISLE_ARM_STAGE_PULL:
         return pull(self);
+    case AISLE_ARM_STAGE_TIME:
+        return time(self, units);
     case AISLE_ARM_STAGE_BUILD:
         return build(self);
     case AISLE_ARM_STAGE_VERIFY:

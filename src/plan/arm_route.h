@@ -4,11 +4,12 @@
 // joint angle between. DIRECT: the motion along the straight line of joint angles, to each of them; the first that is free has the
 // least joint angle travelled of all to that one. Where none is free, or the objective may gain something, SEARCH (arm_search.h) over
 // one bent piece, to each of the nearest AISLE_ARM_TRIES; where that finds none TREE, RRT_STAR_ADAPTIVE over joint angles
-// (arm_space.h), its path PULLed taut and run from rest to rest between its via-points. BUILD (arm_compose.h), VERIFY
+// (arm_space.h), its path PULLed taut and run from rest to rest between its via-points. TIME each piece (arm_motion.h; with PAPER
+// arm_time.h, but a piece that its 100 s are too short for keeps the exact one). BUILD (arm_compose.h), VERIFY
 // (verify_arm.h): where the quintics on the wire are over a limit by what rounding took, all is run slower by AISLE_ARM_STRETCH and proved
 // again, AISLE_ARM_STRETCHES times at most.
 // By objective: SHORTEST and SAFEST take a straight motion as it is (SAFEST one that keeps AISLE_ARM_CREEP); FASTEST, LEAST_ENERGY and
-// SAFEST else search beyond it. PAPER: the paper's search alone (arm_search.h).
+// SAFEST else search beyond it. PAPER: the paper's searches alone (arm_search.h, arm_time.h).
 // By planner: AUTO all of the above; GA and PSO no tree; RRT, RRT_ADAPTIVE, RRT_STAR, RRT_STAR_ADAPTIVE the tree alone; others as AUTO.
 // Causes: JOINT_LIMIT (id: the joint, from 1) start, goal or every way to it is out of a joint's limits; OUT_OF_REACH (value: by how
 // much, m); START_OCCUPIED, GOAL_OCCUPIED (id: the obstacle, of arm_world.h; of several configurations the nearest one's);
@@ -22,6 +23,7 @@
 #include "plan/arm_compose.h"
 #include "plan/arm_search.h"
 #include "plan/arm_space.h"
+#include "plan/arm_time.h"
 #include "plan/verify_arm.h"
 
 #define AISLE_ARM_TRIES 4U
@@ -41,6 +43,7 @@ typedef enum aisle_arm_stage {
     AISLE_ARM_STAGE_SEARCH,
     AISLE_ARM_STAGE_TREE,
     AISLE_ARM_STAGE_PULL,
+    AISLE_ARM_STAGE_TIME,
     AISLE_ARM_STAGE_BUILD,
     AISLE_ARM_STAGE_VERIFY,
     AISLE_ARM_STAGE_END
@@ -57,6 +60,7 @@ typedef struct aisle_arm_route {
     aisle_arm_search search;
     aisle_arm_space space;
     aisle_rrt tree;
+    aisle_arm_time *time;       // of PAPER
     aisle_arm_solutions *goals; // free ones
     aisle_arm_plan *plan;
     aisle_arm_path_msg *path;    // being composed; its head is the caller's
@@ -69,7 +73,8 @@ typedef struct aisle_arm_route {
     double start[AISLE_ARM_LINKS];
     uint32_t at; // goal under way
     uint32_t node_count, node_at,
-        node_to; // of the tree's path: how many, where the pulled one is, what is tried from there
+        node_to;    // of the tree's path: how many, where the pulled one is, what is tried from there
+    uint32_t timed; // piece under way in TIME
     double stretch;
     uint32_t stretches;
     uint32_t spent, budget;

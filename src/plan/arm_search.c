@@ -2,23 +2,21 @@
 
 #include "aisle/messages.h"
 #include "base/check.h"
+#include "plan/arm_time.h"
 
 #include <string.h>
 
 #define GENERATIONS 25U    // of a try
 #define TRIES 8U           // of a search asked for by name; others come after one
-#define STALL 100U         // candidates without a better one, once one was free
+#define STALL 200U         // candidates without a better one, once one was free
 #define BEND_MIDDLE 128.0F // b0: 2 rad
 #define BEND_SKEW 512.0F   // b1: 0.95 rad
 #define SPREAD 0.5F
 #define TIMING_PANELS 24U
 #define HIDDEN 1e-3 // violation of a motion that is free at all samples only
 
-#define PAPER_POPULATION 20U
 #define PAPER_GENERATIONS 100U
 #define PAPER_RANGE 100.0F // of a6 and a7
-#define PAPER_MUTATION 0.3F
-#define PAPER_PARENTS (PAPER_POPULATION / 2U) // selection 0.5
 
 static const double never = (double)INFINITY;
 
@@ -63,7 +61,7 @@ static double violation_of(aisle_arm_search *self, const aisle_arm_piece *piece)
     if (aisle_arm_piece_joint_out(piece, self->world->arm, &out) != 0U) {
         return self->paper ? never : HIDDEN * aisle_min(1.0, 0.5 + out);
     }
-    if (!aisle_arm_world_free(self->world, piece, &self->units, &until)) {
+    if (!aisle_arm_free_piece(self->world, piece, &self->units, &until)) {
         return self->paper ? never : HIDDEN * (1.0 - 0.5 * until);
     }
     return 0.0;
@@ -153,17 +151,7 @@ static void start_ga(aisle_arm_search *self, uint16_t genes, uint64_t seed, bool
     cfg.seed_count = (uint16_t)(is_again ? 0 : 1);
     cfg.spread = SPREAD;
     if (self->paper) {
-        cfg = (aisle_ga_config){.coding = AISLE_GA_REAL,
-                                .crossover = AISLE_GA_BLEND,
-                                .mutation = AISLE_GA_EACH,
-                                .redraw = true,
-                                .pc = 1.0F,
-                                .pm = PAPER_MUTATION,
-                                .generation_max = PAPER_GENERATIONS,
-                                .value_goal = -INFINITY,
-                                .population = PAPER_POPULATION,
-                                .elite = 1U,
-                                .parents = PAPER_PARENTS};
+        cfg = aisle_arm_paper_ga(PAPER_GENERATIONS);
     }
     cfg.cost = cost;
     cfg.cost_ctx = self;

@@ -7,7 +7,7 @@
 //                1 + risk_weight * mean of max(1 - gap / AISLE_ARM_CREEP, 0); FASTEST the least duration (s); LEAST_ENERGY the
 //                motors' work at the least duration, the integral of |torque * rate| (J)
 // GA (algo/ga.h) with a population of 24, PSO (algo/pso.h) with 24 particles: tries of 25 generations, one, or up to eight if asked for
-// by name, until a motion is free and 100 more candidates have brought no better one. The first try starts at the motion without a
+// by name, until a motion is free and 200 more candidates have brought no better one. The first try starts at the motion without a
 // bend, so what comes out is never worse; later ones look everywhere.
 // PAPER is the paper's own search (Machmudah et al. 2012): 20 points, 100 generations, selection 0.5, mutation
 // 0.3, its coefficients a6 and a7 in [-100, 100], value as SHORTEST, and the death penalty: whoever collides is not allowed at
@@ -19,7 +19,7 @@
 
 #include "algo/ga.h"
 #include "algo/pso.h"
-#include "plan/arm_world.h"
+#include "plan/arm_free.h"
 
 #define AISLE_ARM_SAMPLES 24U
 #define AISLE_ARM_CREEP 0.05 // m, gaps below it are risk

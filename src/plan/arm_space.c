@@ -22,9 +22,7 @@ static void go_straight(void *context, const double *a, const double *b, double 
 
 static bool is_straight_free(void *context, const double *a, const double *b, uint32_t *units) {
     const aisle_arm_space *self = (const aisle_arm_space *)context;
-    aisle_arm_piece piece;
-    aisle_arm_piece_of(self->world->arm->links, a, b, NULL, &piece);
-    return aisle_arm_world_free(self->world, &piece, units, NULL);
+    return aisle_arm_free_line(self->world, a, b, units);
 }
 
 void aisle_arm_space_begin(aisle_arm_space *self, const aisle_arm_world *world) {

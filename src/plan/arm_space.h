@@ -1,13 +1,13 @@
 // arm_space.h - the joint angles of an arm, as sampling planners (algo/rrt.h) want them. Level 4.
 //
 // A configuration is an angle for each joint, within its limits; nothing comes round. The motion between two is the straight line
-// of joint angles, run as arm_motion.h's piece without a bend, and tested as a whole (arm_world.h). Distance and cost: Euclidean,
+// of joint angles, run as arm_motion.h's piece without a bend, and tested as a whole (arm_free.h). Distance and cost: Euclidean,
 // rad. Memory: none. Time: a motion is O(1) in the open, O(travel / gap * obstacles near) else.
 #ifndef AISLE_PLAN_ARM_SPACE_H
 #define AISLE_PLAN_ARM_SPACE_H
 
 #include "algo/rrt.h"
-#include "plan/arm_world.h"
+#include "plan/arm_free.h"
 
 typedef struct aisle_arm_space {
     aisle_cspace cspace; // its context is this struct, which must stay where it is

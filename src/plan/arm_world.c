@@ -1,6 +1,7 @@
 #include "plan/arm_world.h"
 
 #include "base/check.h"
+#include "plan/arm_gap.h"
 
 #include <string.h>
 
@@ -36,7 +37,8 @@ static bool add(aisle_arm_world *self, const aisle_convex *shape, int32_t id) {
         return false;
     }
     aisle_arm_block *block = &self->block[self->count++];
-    *block = (aisle_arm_block){.shape = *shape, .box = aisle_convex_aabb(shape), .id = id};
+    *block = (aisle_arm_block){
+        .shape = *shape, .box = aisle_convex_aabb(shape), .id = id, .plain = aisle_arm_gap_is_plain(shape)};
     return true;
 }
 
@@ -102,6 +104,7 @@ aisle_status aisle_arm_world_begin(aisle_arm_world *self, const aisle_layout *la
     self->bounds = aisle_layout_bounds(layout);
     self->body = aisle_vehicle_place(vehicle, pose, 0.0, self->outline);
     self->body_box = aisle_convex_aabb(&self->body);
+    self->body_plain = aisle_arm_gap_is_plain(&self->body);
     self->exempt = aisle_arm_mount(arm, vehicle);
     double wide = 0.0;
     for (uint32_t i = 0; i < arm->links; i++) {
@@ -163,27 +166,39 @@ static void lower(least *self, double gap, int32_t id) {
     }
 }
 
-static void lower_by_shape(least *self, const limb *link, const aisle_convex *shape, int32_t id) {
-    const aisle_convex capsule = {link->axis, 2U, link->radius};
-    lower(self, aisle_convex_gap(&capsule, shape), id);
+// What is this far off cannot lower the gap: two boxes, radii beside them.
+static bool is_out_of_sight(const least *self, aisle_aabb a, aisle_aabb b, double radii) {
+    const double dx = aisle_max(0.0, aisle_max(a.lo.x - b.hi.x, b.lo.x - a.hi.x));
+    const double dy = aisle_max(0.0, aisle_max(a.lo.y - b.hi.y, b.lo.y - a.hi.y)), sight = self->gap + radii;
+    return dx * dx + dy * dy >= sight * sight;
 }
 
-static least link_gap(const aisle_arm_world *self, const limb *links, const limb *own, uint32_t i, double cap) {
-    least best = {cap, 0};
-    lower(&best, bounds_gap(self, &links[i]), AISLE_LAYOUT_ID_BOUNDS);
-    for (uint32_t k = 0; k < self->count && best.gap > 0.0; k++) {
-        if (aisle_aabb_gap(links[i].box, self->block[k].box) < best.gap + links[i].radius) {
-            lower_by_shape(&best, &links[i], &self->block[k].shape, self->block[k].id);
+static void lower_by_hull(least *self, const limb *link, const aisle_convex *hull, bool plain, int32_t id) {
+    const double radii = link->radius + hull->radius;
+    lower(self, aisle_arm_axis_gap(hull, plain, link->axis[0], link->axis[1], self->gap + radii) - radii, id);
+}
+
+// To all but the arm itself, within best->gap.
+static void lower_by_world(const aisle_arm_world *self, const limb *links, const limb *own, uint32_t i, least *best) {
+    lower(best, bounds_gap(self, &links[i]), AISLE_LAYOUT_ID_BOUNDS);
+    for (uint32_t k = 0; k < self->count && best->gap > 0.0; k++) {
+        const aisle_arm_block *block = &self->block[k];
+        if (!is_out_of_sight(best, links[i].box, block->box, links[i].radius)) {
+            lower_by_hull(best, &links[i], &block->shape, block->plain, block->id);
         }
     }
-    if (own[i].radius >= 0.0 && aisle_aabb_gap(own[i].box, self->body_box) < best.gap + own[i].radius) {
-        lower_by_shape(&best, &own[i], &self->body, AISLE_ARM_ID_BODY);
+    if (own[i].radius >= 0.0 && !is_out_of_sight(best, own[i].box, self->body_box, own[i].radius)) {
+        lower_by_hull(best, &own[i], &self->body, self->body_plain, AISLE_ARM_ID_BODY);
     }
-    if (i == 2U && aisle_aabb_gap(links[2].box, links[0].box) < best.gap + links[2].radius + links[0].radius) {
-        const aisle_convex first = {links[0].axis, 2U, links[0].radius};
-        lower_by_shape(&best, &links[2], &first, AISLE_ARM_ID_ARM);
+}
+
+// Of three links, the last one to the first.
+static void lower_by_arm(const limb *links, least *best) {
+    const double radii = links[0].radius + links[2].radius;
+    if (!is_out_of_sight(best, links[2].box, links[0].box, radii)) {
+        const double apart = aisle_segment_gap(links[2].axis[0], links[2].axis[1], links[0].axis[0], links[0].axis[1]);
+        lower(best, apart - radii, AISLE_ARM_ID_ARM);
     }
-    return best;
 }
 
 double aisle_arm_world_gap(const aisle_arm_world *self, const double *q, double cap, double *gaps, int32_t *id) {
@@ -191,7 +206,11 @@ double aisle_arm_world_gap(const aisle_arm_world *self, const double *q, double 
     least best = {cap, 0};
     place(self, q, links, own);
     for (uint32_t i = 0; i < self->arm->links; i++) {
-        const least mine = link_gap(self, links, own, i, cap);
+        least mine = {cap, 0};
+        lower_by_world(self, links, own, i, &mine);
+        if (i == 2U) {
+            lower_by_arm(links, &mine);
+        }
         lower(&best, mine.gap, mine.id);
         if (gaps != NULL) {
             gaps[i] = mine.gap;
@@ -223,13 +242,10 @@ static double length_inside(const limb *link, const aisle_convex *shape) {
     return shape->n > 2U && to > from ? (to - from) * aisle_vec2_length(d) : 0.0;
 }
 
-static double depth_in(const limb *link, const aisle_convex *shape) {
-    const aisle_convex axis = {link->axis, 2U, 0.0}, hull = {shape->v, shape->n, 0.0};
-    const double gap = aisle_convex_gap(&axis, &hull), want = link->radius + shape->radius + AISLE_ARM_KEEP;
-    if (gap > 0.0) {
-        return aisle_max(0.0, want - gap);
-    }
-    return want + length_inside(link, &hull);
+static double depth_in(const limb *link, const aisle_convex *shape, bool plain) {
+    const double want = link->radius + shape->radius + AISLE_ARM_KEEP;
+    const double gap = aisle_arm_axis_gap(shape, plain, link->axis[0], link->axis[1], want);
+    return gap > 0.0 ? want - gap : want + length_inside(link, shape);
 }
 
 static double link_depth(const aisle_arm_world *self, const limb *links, const limb *own, uint32_t i) {
@@ -237,15 +253,15 @@ static double link_depth(const aisle_arm_world *self, const limb *links, const l
     double sum = aisle_max(0.0, AISLE_ARM_KEEP - bounds_gap(self, &links[i]));
     for (uint32_t k = 0; k < self->count; k++) {
         if (aisle_aabb_gap(links[i].box, self->block[k].box) < want) {
-            sum += depth_in(&links[i], &self->block[k].shape);
+            sum += depth_in(&links[i], &self->block[k].shape, self->block[k].plain);
         }
     }
     if (own[i].radius >= 0.0 && aisle_aabb_gap(own[i].box, self->body_box) < want) {
-        sum += depth_in(&own[i], &self->body);
+        sum += depth_in(&own[i], &self->body, self->body_plain);
     }
     if (i == 2U) {
         const aisle_convex first = {links[0].axis, 2U, links[0].radius};
-        sum += depth_in(&links[2], &first);
+        sum += depth_in(&links[2], &first, false);
     }
     return sum;
 }
@@ -260,41 +276,32 @@ double aisle_arm_world_depth(const aisle_arm_world *self, const double *q) {
     return sum;
 }
 
-// ---- motion
+// ---- room
 
-// The longest step h from r in which link i stays within `room`: slope * h + bend * h^2 <= room.
-static double step_of(const aisle_arm_world *self, uint32_t i, const double *rate, const double *change, double room) {
-    double slope = 0.0, bend = 0.0;
-    for (uint32_t j = 0; j <= i; j++) {
-        const double reach = aisle_arm_reach(self->arm, j, i);
-        slope += fabs(rate[j]) * reach;
-        bend += 0.5 * change[j] * reach;
+// Lowers *h to how far the parameter may run to either side while what moves by slope * h + bend * h^2 at most stays free.
+static void lower_step(double slope, double bend, double gap, double *h) {
+    const double room = gap - 0.5 * AISLE_ARM_KEEP, below = slope + sqrt(slope * slope + 4.0 * bend * room);
+    if (below * *h > 2.0 * room) {
+        *h = 2.0 * room / below;
     }
-    const double below = slope + sqrt(slope * slope + 4.0 * bend * room);
-    return below > 0.0 ? 2.0 * room / below : 1.0; // nothing moves
 }
 
-bool aisle_arm_world_free(const aisle_arm_world *self, const aisle_arm_piece *piece, uint32_t *units, double *until) {
-    double change[AISLE_ARM_LINKS], r = 0.0;
-    aisle_arm_piece_bounds(piece, 2U, change);
-    for (;;) {
-        double q[AISLE_ARM_LINKS], rate[AISLE_ARM_LINKS], gaps[AISLE_ARM_LINKS], h = 1.0;
-        aisle_arm_piece_at(piece, r, 0U, q);
-        aisle_arm_piece_at(piece, r, 1U, rate);
-        *units += AISLE_ARM_UNITS;
-        const bool is_free = aisle_arm_world_gap(self, q, AISLE_ARM_SIGHT, gaps, NULL) >= AISLE_ARM_KEEP;
-        for (uint32_t i = 0; is_free && i < piece->links; i++) {
-            h = aisle_min(h, step_of(self, i, rate, change, gaps[i] - AISLE_ARM_KEEP * 0.5));
+bool aisle_arm_world_room(const aisle_arm_world *self, const double *q, const aisle_arm_pace *pace, double *h) {
+    limb links[AISLE_ARM_LINKS], own[AISLE_ARM_LINKS];
+    const uint32_t count = self->arm->links;
+    place(self, q, links, own);
+    for (uint32_t i = count + (count == 3U ? 1U : 0U); i-- > 0U;) { // from the end: it moves most
+        const double need = pace->slope[i] * *h + pace->bend[i] * *h * *h + 0.5 * AISLE_ARM_KEEP;
+        least best = {aisle_max(need, AISLE_ARM_KEEP), 0};
+        if (i < count) {
+            lower_by_world(self, links, own, i, &best);
+        } else {
+            lower_by_arm(links, &best);
         }
-        if (until != NULL) {
-            *until = r;
-        }
-        if (!is_free || h < AISLE_ARM_STEP_MIN) {
+        if (best.gap < AISLE_ARM_KEEP) {
             return false;
         }
-        if (r >= 1.0) {
-            return true;
-        }
-        r = aisle_min(1.0, r + h);
+        lower_step(pace->slope[i], pace->bend[i], best.gap, h);
     }
+    return true;
 }

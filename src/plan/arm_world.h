@@ -8,10 +8,7 @@
 // of the base is exempt; the rest of it, and every other link, keeps off the body. So a base on the rim leaves the first link
 // 60 degrees to either side of straight out; one that stands out of the body by the link's radius may fold along it.
 // The vehicle's margin is not kept by links: what the arm is to keep off obstacles belongs to link_radius.
-// Motions of a piece are proved by conservative advancement (Mirtich 1996): no point of link i moves by more than
-//     sum over joints j <= i of |dq_j| * reach(j, i)
-// so as long as that is less than what is free around it nothing touches; |dq_j| over a step h is at most |q'_j| h + max|q''_j|
-// h^2 / 2. Shares no code with the proof of what leaves (verify_arm.h).
+// Motions: arm_free.h. Shares no code with the proof of what leaves (verify_arm.h).
 // Memory: the caller's arena, 128 bytes an obstacle. Time: begin O(zones and scan rows in reach); a gap O(obstacles near a
 // link). Units: AISLE_ARM_UNITS a configuration looked at.
 #ifndef AISLE_PLAN_ARM_WORLD_H
@@ -21,18 +18,18 @@
 #include "robot/vehicle.h"
 #include "world/layout.h"
 
-#define AISLE_ARM_ID_BODY (-3)  // "obstacle id" of the vehicle's own body; -1 the scan, -2 the bounds
-#define AISLE_ARM_ID_ARM (-4)   // and of the arm's own first link
-#define AISLE_ARM_KEEP 1e-3     // m, that every motion keeps off everything
-#define AISLE_ARM_BLOCKS 1024U  // obstacles in reach
-#define AISLE_ARM_UNITS 10U     // work units, of a configuration looked at: about a microsecond
-#define AISLE_ARM_STEP_MIN 1e-7 // of a piece: a shorter step forward is none
+#define AISLE_ARM_ID_BODY (-3) // "obstacle id" of the vehicle's own body; -1 the scan, -2 the bounds
+#define AISLE_ARM_ID_ARM (-4)  // and of the arm's own first link
+#define AISLE_ARM_KEEP 1e-3    // m, that every motion keeps off everything
+#define AISLE_ARM_BLOCKS 1024U // obstacles in reach
+#define AISLE_ARM_UNITS 10U    // work units, of a configuration looked at: less than a microsecond
 
 typedef struct aisle_arm_block {
     aisle_convex shape; // its vertices are own or the layout's
     aisle_vec2 own[4];
     aisle_aabb box;
     int32_t id;
+    bool plain; // arm_gap.h
 } aisle_arm_block;
 
 typedef struct aisle_arm_world {
@@ -44,6 +41,7 @@ typedef struct aisle_arm_world {
     aisle_vec2 outline[AISLE_SHAPE_VERTICES_MAX];
     aisle_convex body;
     aisle_aabb body_box;
+    bool body_plain;
     double exempt; // m, of the first link from the base on
 } aisle_arm_world;
 
@@ -66,8 +64,15 @@ double aisle_arm_world_gap(const aisle_arm_world *self, const double *q, double 
 // steadily with the depth, so that searches find their way out.
 double aisle_arm_world_depth(const aisle_arm_world *self, const double *q);
 
-// Is the whole piece free? True: every configuration on it keeps half of keep at least; false: one keeps less than keep. Continuous,
-// not by samples. *until (may be NULL): how far it is free, [0, 1]. Joint limits are not looked at.
-#define AISLE_ARM_SIGHT 0.3 // m, gaps are looked for within
-bool aisle_arm_world_free(const aisle_arm_world *self, const aisle_arm_piece *piece, uint32_t *units, double *until);
+#define AISLE_ARM_SIGHT 0.3 // m, gaps are told up to
+
+// How fast the arm moves about a configuration, as its parameter runs: no point of link i gets farther than slope[i] * h + bend[i]
+// * h^2 within h of it; [AISLE_ARM_LINKS]: no point of the last of three links, seen from the first one.
+typedef struct aisle_arm_pace {
+    double slope[AISLE_ARM_LINKS + 1U], bend[AISLE_ARM_LINKS + 1U];
+} aisle_arm_pace;
+
+// Is q free, by keep, and how far may the motion through it run? *h, in: as far as is asked for; out: lowered to where half of keep
+// is left at least, to either side. False: q keeps less than keep.
+bool aisle_arm_world_room(const aisle_arm_world *self, const double *q, const aisle_arm_pace *pace, double *h);
 #endif

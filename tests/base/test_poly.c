@@ -71,6 +71,31 @@ static void test_every_root_of_a_product_of_factors_is_found(void) {
         }
     }
 }
+static void test_every_change_of_sign_is_a_root_and_every_root_is_one(void) {
+    uint32_t sum = 0;
+    for (uint64_t seed = 0; seed < 10U * SEEDS; seed++) {
+        aisle_rng rng = aisle_rng_seed(seed);
+        double c[AISLE_POLY_DEGREE_MAX + 1U], roots[AISLE_POLY_DEGREE_MAX];
+        const uint32_t degree = aisle_rng_below(&rng, AISLE_POLY_DEGREE_MAX) + 1U;
+        draw(&rng, degree, c);
+        for (uint32_t i = 1; i <= degree; i++) { // steeper and steeper: many of them have a root or more
+            c[i] *= (double)(1U << (2U * i));
+        }
+        const uint32_t count = aisle_poly_roots(c, degree, roots);
+        uint32_t changes = 0;
+        for (int i = 0; i < 500; i++) {
+            changes += exact(c, degree, i / 500.0L) * exact(c, degree, (i + 1) / 500.0L) < 0.0L ? 1U : 0U;
+        }
+        TEST_ASSERT_TRUE(count >= changes && (count - changes) % 2U == 0U); // two within a step may be
+        for (uint32_t i = 0; i < count; i++) {
+            const long double r = (long double)roots[i], by = 1e-10L;
+            TEST_ASSERT_TRUE(exact(c, degree, r - by) * exact(c, degree, r + by) < 0.0L);
+            TEST_ASSERT_TRUE(i == 0U || roots[i] > roots[i - 1U]);
+        }
+        sum += count;
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(5U * SEEDS, sum);
+}
 static void test_a_zero_that_is_only_touched_is_told_once_at_most(void) {
     const double square[3] = {0.25, -1.0, 1.0}; // (r - 1/2)^2
     double roots[AISLE_POLY_DEGREE_MAX];
@@ -119,6 +144,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_values_and_derivatives_are_those_of_the_sum);
     RUN_TEST(test_every_root_of_a_product_of_factors_is_found);
+    RUN_TEST(test_every_change_of_sign_is_a_root_and_every_root_is_one);
     RUN_TEST(test_a_zero_that_is_only_touched_is_told_once_at_most);
     RUN_TEST(test_ranges_and_peaks_are_those_of_a_fine_walk);
     RUN_TEST(test_bounds_hold_on_every_part_and_close_in_on_the_range);
