@@ -223,16 +223,16 @@ def draw_strip(axes, scenario, msg, arm, pose, path) -> None:  # noqa: ANN001
 def draw_curves(axes, arm, base_theta, path) -> None:  # noqa: ANN001
     motion = arms.motion_of(path, arm.links, CURVE_SAMPLES)
     rows = [
-        ("joint angle, rad", motion.q, None),
-        ("velocity, rad/s", motion.v, arm.v_max),
-        ("acceleration, rad/s2", motion.a, arm.a_max),
-        ("jerk, rad/s3", motion.j, arm.j_max),
-        ("torque, N m", arms.torques(arm, base_theta, motion), arm.torque_max),
+        ("joint angle, rad", motion.q, arm.low, arm.high),
+        ("velocity, rad/s", motion.v, -arm.v_max, arm.v_max),
+        ("acceleration, rad/s2", motion.a, -arm.a_max, arm.a_max),
+        ("jerk, rad/s3", motion.j, -arm.j_max, arm.j_max),
+        ("torque, N m", arms.torques(arm, base_theta, motion), -arm.torque_max, arm.torque_max),
     ]
-    for ax, (title, values, most) in zip(axes, rows):
+    for ax, (title, values, least, most) in zip(axes, rows):
         for k in range(arm.links):
             (line,) = ax.plot(motion.t, values[:, k], label=f"joint {k + 1}")
-            for limit in () if most is None else (most[k], -most[k]):
+            for limit in (least[k], most[k]):
                 ax.axhline(limit, color=line.get_color(), linewidth=0.7, linestyle="--")
         ax.set(title=title, xlabel="s")
     axes[0].legend()

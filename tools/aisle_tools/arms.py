@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +13,7 @@ import numpy as np
 from aisle import arm_goal_t, arm_path_t, options_t, pose_t, vehicle_t
 
 from aisle_tools import layouts, names, vehicle
+from aisle_tools.bus import LogWriter, read_events
 from aisle_tools.errors import UserError
 from aisle_tools.world import Polygon, World, float32
 
@@ -258,6 +261,24 @@ def setup_messages(scenario: Scenario, map_id: int = 1) -> list[tuple[str, objec
     """Layout and vehicle, in the order to send them."""
     scenario.vehicle.vehicle_revision = max(scenario.vehicle.vehicle_revision, 1)
     return [*layouts.make_messages(scenario.world, map_id, 1, 1), ("VEHICLE", scenario.vehicle)]
+
+
+def plan_all(program: Path, scenario: Scenario, options: list[options_t]) -> tuple[dict[int, arm_path_t], list[float]]:
+    """The scenario's goal asked once for each of the options, by bench-arm: answers by goal id, 1 for the first; processor ms."""
+    with tempfile.TemporaryDirectory() as folder:
+        log, out = Path(folder) / "in.log", Path(folder) / "out.log"
+        writer = LogWriter(log, "AISLE")
+        for channel, msg in setup_messages(scenario):
+            writer.publish(channel, msg)
+        writer.publish("POSE", make_pose(scenario.pose, 1, 1))
+        for i, option in enumerate(options):
+            writer.publish("ARM_GOAL", make_goal(i + 1, scenario.start, scenario.kind, scenario.at, option))
+        writer.close()
+        done = subprocess.run([str(program), str(log), str(out)], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise UserError(f"{program}: exit {done.returncode}: {done.stderr}")
+        answers = [arm_path_t.decode(data) for _, channel, data in read_events(out) if channel == "AISLE_ARM_PATH"]
+    return {a.arm_goal_id: a for a in answers}, [float(line.split()[1]) for line in done.stdout.splitlines()]
 
 
 def reason(path: arm_path_t) -> str:

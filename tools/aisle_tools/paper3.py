@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import subprocess
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +15,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from aisle_tools import arm, arms  # noqa: E402
-from aisle_tools.bus import LogWriter, read_events  # noqa: E402
 from aisle_tools.errors import UserError  # noqa: E402
 
 CASES = ("arm_4_complex", "arm_2_post", "arm_3_box")  # I, II, III
@@ -65,27 +62,17 @@ def run(args: argparse.Namespace) -> int:
 
 
 def ask(program: Path, scenario: arms.Scenario, case: str, method: str, seeds: int) -> Outcome:
-    with tempfile.TemporaryDirectory() as temporary:
-        log, out = Path(temporary) / "in.log", Path(temporary) / "out.log"
-        writer = LogWriter(log, "AISLE")
-        for channel, msg in arms.setup_messages(scenario):
-            writer.publish(channel, msg)
-        writer.publish("POSE", arms.make_pose(scenario.pose, 1, 1))
-        for seed in range(seeds):
-            options = options_t()
-            options.planner, options.objective = METHODS[method]
-            options.seed = seed
-            writer.publish("ARM_GOAL", arms.make_goal(seed + 1, scenario.start, scenario.kind, scenario.at, options))
-        writer.close()
-        done = subprocess.run([str(program), str(log), str(out)], capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            raise UserError(f"{program}: exit {done.returncode}: {done.stderr}")
-        answers = [arm_path_t.decode(data) for _, channel, data in read_events(out) if channel == "AISLE_ARM_PATH"]
-    found = [a for a in answers if a.status == path_t.OK]
+    asked = []
+    for seed in range(seeds):
+        options = options_t()
+        options.planner, options.objective = METHODS[method]
+        options.seed = seed
+        asked.append(options)
+    answers, times = arms.plan_all(program, scenario, asked)
+    found = [a for a in answers.values() if a.status == path_t.OK]
     travel, duration = (float(np.median([getattr(a, k) for a in found])) if found else np.nan for k in ("travel", "duration"))
-    ms = float(np.median([float(line.split()[1]) for line in done.stdout.splitlines()]))
     best = min(found, key=lambda a: a.travel) if found else None
-    return Outcome(case, method, len(found), len(answers), travel, duration, ms, best)
+    return Outcome(case, method, len(found), len(answers), travel, duration, float(np.median(times)), best)
 
 
 def draw(out: Path, folder: Path, outcomes: list[Outcome]) -> None:

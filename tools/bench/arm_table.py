@@ -14,9 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
-import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +22,7 @@ import numpy as np
 import shapely
 from aisle import arm_path_t, options_t, path_t
 from aisle_tools import arms, names, vehicle
-from aisle_tools.bus import LogWriter, read_events
+from aisle_tools.errors import UserError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SAMPLES = 10_000
@@ -48,23 +46,6 @@ class Row:
     planners: dict[str, int]
     ms: np.ndarray
     faults: list[str]
-
-
-def run_program(program: Path, scenario: arms.Scenario, options: list[options_t]) -> tuple[dict[int, arm_path_t], list[float]]:
-    with tempfile.TemporaryDirectory() as folder:
-        log, out = Path(folder) / "in.log", Path(folder) / "out.log"
-        writer = LogWriter(log, "AISLE")
-        for channel, msg in arms.setup_messages(scenario):
-            writer.publish(channel, msg)
-        writer.publish("POSE", arms.make_pose(scenario.pose, 1, 1))
-        for i, option in enumerate(options):
-            writer.publish("ARM_GOAL", arms.make_goal(i + 1, scenario.start, scenario.kind, scenario.at, option))
-        writer.close()
-        done = subprocess.run([str(program), str(log), str(out)], capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            raise SystemExit(f"{program}: exit {done.returncode}: {done.stderr}")
-        answers = [arm_path_t.decode(data) for _, channel, data in read_events(out) if channel == "AISLE_ARM_PATH"]
-    return {a.arm_goal_id: a for a in answers}, [float(line.split()[1]) for line in done.stdout.splitlines()]
 
 
 def make_options(args: argparse.Namespace, seed: int) -> options_t:
@@ -149,7 +130,7 @@ def judge_all(judge: Judge, answers: dict[int, arm_path_t]) -> tuple[float, floa
 
 def row_of(args: argparse.Namespace, path: Path) -> Row:
     scenario = arms.read_scenario(path)
-    answers, ms = run_program(args.program, scenario, [make_options(args, seed) for seed in range(args.seeds)])
+    answers, ms = arms.plan_all(args.program, scenario, [make_options(args, seed) for seed in range(args.seeds)])
     worst, clear, over, faults = judge_all(Judge(scenario), answers)
     found = [a for a in answers.values() if a.status == path_t.OK]
     causes: dict[str, int] = {}
@@ -179,7 +160,10 @@ def main() -> int:
     for path in sorted(args.folder.glob("*.json")):
         if args.only and not any(o in path.stem for o in args.only):
             continue
-        row = row_of(args, path)
+        try:
+            row = row_of(args, path)
+        except UserError as e:
+            raise SystemExit(f"arm_table: {e}") from None
         rows.append(row)
         print(
             f"{row.name:<14} {row.found:>5}/{row.seeds:<4} {row.worst:>8.5f} {row.clear:>8.4f} {row.over_least:>10.5f} "
