@@ -18,6 +18,8 @@ void aisle_arm_route_carve(aisle_arm_route *self, aisle_arena *arena, uint32_t n
     aisle_arm_search_carve(self != NULL ? &self->search : NULL, arena);
     void *time = aisle_arena_take(arena, 1U, sizeof(aisle_arm_time));
     aisle_arm_time_carve(self != NULL ? (aisle_arm_time *)time : NULL, arena);
+    void *join = aisle_arena_take(arena, 1U, sizeof(aisle_arm_join));
+    aisle_arm_join_carve(self != NULL ? (aisle_arm_join *)join : NULL, arena);
     void *goals = aisle_arena_take(arena, 1U, sizeof(aisle_arm_solutions));
     void *plan = aisle_arena_take(arena, 1U, sizeof(aisle_arm_plan));
     void *path = aisle_arena_take(arena, 1U, sizeof(aisle_arm_path_msg));
@@ -26,6 +28,7 @@ void aisle_arm_route_carve(aisle_arm_route *self, aisle_arena *arena, uint32_t n
     void *bytes = aisle_arena_take(arena, AISLE_ARM_PATH_BYTES, 1U);
     if (self != NULL) {
         self->time = (aisle_arm_time *)time;
+        self->join = (aisle_arm_join *)join;
         self->goals = (aisle_arm_solutions *)goals;
         self->plan = (aisle_arm_plan *)plan;
         self->path = (aisle_arm_path_msg *)path;
@@ -364,15 +367,20 @@ static aisle_status pull(aisle_arm_route *self) {
 
 // ---- time
 
-// The paper's search goes on with the piece under way, if there is one.
-static void begin_paper_time(aisle_arm_route *self) {
+// What comes once durations are known: PAPER searches its own, piece by piece; a path of several pieces is joined.
+static void go_on(aisle_arm_route *self) {
     const aisle_options_msg *options = options_of(self);
-    if (options->objective == AISLE_OPTIONS_PAPER && self->timed < self->plan->count) {
+    const bool is_paper = options->objective == AISLE_OPTIONS_PAPER;
+    self->stage = AISLE_ARM_STAGE_BUILD;
+    if (is_paper && self->timed < self->plan->count) {
         aisle_arm_time_start(self->time, &self->arm, &self->dynamics, &self->plan->piece[self->timed],
                              (uint64_t)(int64_t)options->seed);
         self->timed++;
-    } else {
-        self->stage = AISLE_ARM_STAGE_BUILD;
+        self->stage = AISLE_ARM_STAGE_TIME;
+    } else if (!is_paper && self->plan->count > 1U) {
+        aisle_arm_search_start(&self->search, &self->world, self->start, self->goals->q[self->at], options);
+        aisle_arm_join_start(self->join, &self->world, &self->dynamics, &self->search, self->plan, &self->spent);
+        self->stage = AISLE_ARM_STAGE_JOIN;
     }
 }
 
@@ -383,10 +391,17 @@ static aisle_status time(aisle_arm_route *self, uint32_t units) {
             return end(self, AISLE_STATUS_KINEMATIC, (int32_t)joint + 1, 0.0);
         }
         self->spent += AISLE_ARM_UNITS * self->plan->count;
-        begin_paper_time(self);
+        go_on(self);
     } else if (aisle_arm_time_step(self->time, units, &self->spent, &self->plan->duration[self->timed - 1U]) !=
                AISLE_BUSY) {
-        begin_paper_time(self);
+        go_on(self);
+    }
+    return AISLE_BUSY;
+}
+
+static aisle_status join(aisle_arm_route *self, uint32_t units) {
+    if (aisle_arm_join_step(self->join, units, &self->spent) == AISLE_OK) {
+        self->stage = AISLE_ARM_STAGE_BUILD;
     }
     return AISLE_BUSY;
 }
@@ -461,6 +476,8 @@ static aisle_status step(aisle_arm_route *self, uint32_t units) {
         return pull(self);
     case AISLE_ARM_STAGE_TIME:
         return time(self, units);
+    case AISLE_ARM_STAGE_JOIN:
+        return join(self, units);
     case AISLE_ARM_STAGE_BUILD:
         return build(self);
     case AISLE_ARM_STAGE_VERIFY:

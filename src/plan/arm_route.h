@@ -4,8 +4,9 @@
 // joint angle between. DIRECT: the motion along the straight line of joint angles, to each of them; the first that is free has the
 // least joint angle travelled of all to that one. Where none is free, or the objective may gain something, SEARCH (arm_search.h) over
 // one bent piece, to each of the nearest AISLE_ARM_TRIES; where that finds none TREE, RRT_STAR_ADAPTIVE over joint angles
-// (arm_space.h), its path PULLed taut and run from rest to rest between its via-points. TIME each piece (arm_motion.h; with PAPER
-// arm_time.h, but a piece that its 100 s are too short for keeps the exact one). BUILD (arm_compose.h), VERIFY
+// (arm_space.h), its path PULLed taut. TIME each piece (arm_motion.h; with PAPER
+// arm_time.h, but a piece that its 100 s are too short for keeps the exact one). JOIN pieces of a tree's path (arm_join.h; not with
+// PAPER): it rests at those via-points alone where no bent piece gets by. BUILD (arm_compose.h), VERIFY
 // (verify_arm.h): where the quintics on the wire are over a limit by what rounding took, all is run slower by AISLE_ARM_STRETCH and proved
 // again, AISLE_ARM_STRETCHES times at most.
 // By objective: SHORTEST and SAFEST take a straight motion as it is (SAFEST one that keeps AISLE_ARM_CREEP); FASTEST, LEAST_ENERGY and
@@ -21,6 +22,7 @@
 #define AISLE_PLAN_ARM_ROUTE_H
 
 #include "plan/arm_compose.h"
+#include "plan/arm_join.h"
 #include "plan/arm_search.h"
 #include "plan/arm_space.h"
 #include "plan/arm_time.h"
@@ -44,6 +46,7 @@ typedef enum aisle_arm_stage {
     AISLE_ARM_STAGE_TREE,
     AISLE_ARM_STAGE_PULL,
     AISLE_ARM_STAGE_TIME,
+    AISLE_ARM_STAGE_JOIN,
     AISLE_ARM_STAGE_BUILD,
     AISLE_ARM_STAGE_VERIFY,
     AISLE_ARM_STAGE_END
@@ -60,7 +63,8 @@ typedef struct aisle_arm_route {
     aisle_arm_search search;
     aisle_arm_space space;
     aisle_rrt tree;
-    aisle_arm_time *time;       // of PAPER
+    aisle_arm_time *time; // of PAPER
+    aisle_arm_join *join;
     aisle_arm_solutions *goals; // free ones
     aisle_arm_plan *plan;
     aisle_arm_path_msg *path;    // being composed; its head is the caller's

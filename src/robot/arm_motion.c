@@ -7,7 +7,8 @@
 
 #define JOINT_SLACK 1e-9 // rad
 #define GOLDEN 0.6180339887498949
-#define GOLDEN_STEPS 40U // down to 4e-9 of two panels
+#define GOLDEN_STEPS 28U // down to 1.4e-6 of two panels
+#define DIP_DEPTH 2.0    // a dip that is so much above the lowest place is not looked into
 #define ROOT_STEPS 200U
 
 void aisle_arm_piece_of(uint32_t links, const double *from, const double *to, const double *bend,
@@ -45,10 +46,18 @@ static uint32_t derive(const aisle_arm_piece *self, uint32_t j, uint32_t order, 
 }
 
 void aisle_arm_piece_at(const aisle_arm_piece *self, double r, uint32_t order, double *out) {
+    static const double falling[4][AISLE_ARM_DEGREE + 1U] = {{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0},
+                                                             {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0},
+                                                             {0.0, 0.0, 2.0, 6.0, 12.0, 20.0, 30.0, 42.0},
+                                                             {0.0, 0.0, 0.0, 6.0, 24.0, 60.0, 120.0, 210.0}};
+    AISLE_ASSERT(order < 4U);
+    const double *factor = falling[order]; // i (i - 1) ... of the derivative
     for (uint32_t j = 0; j < self->links; j++) {
-        double c[AISLE_ARM_DEGREE + 1U];
-        const uint32_t degree = derive(self, j, order, c);
-        out[j] = aisle_poly_value(c, degree, r);
+        double value = self->c[j][AISLE_ARM_DEGREE] * factor[AISLE_ARM_DEGREE];
+        for (uint32_t i = AISLE_ARM_DEGREE; i > order; i--) {
+            value = value * r + self->c[j][i - 1U] * factor[i - 1U];
+        }
+        out[j] = value;
     }
 }
 
@@ -191,22 +200,27 @@ static double lowest(const torque_of *self, double lo, double hi, uint32_t *join
 }
 
 static void take_torque(const torque_of *self, uint32_t panels, aisle_arm_timing *out) {
+    double open[AISLE_ARM_TIMING_PANELS + 1U], best = (double)INFINITY;
+    const double step = 1.0 / (double)panels;
     uint32_t joint = 0, at_best = 0;
-    double before = (double)INFINITY, here = open_at(self, 0.0, &joint), best = here;
-    at_best = joint;
     for (uint32_t i = 0; i <= panels; i++) {
-        const double r = (double)i / (double)panels;
-        const double next = i < panels ? open_at(self, (double)(i + 1U) / (double)panels, &joint) : (double)INFINITY;
-        if (here <= before && here <= next) {
-            const double step = 1.0 / (double)panels;
+        open[i] = open_at(self, (double)i / (double)panels, &joint);
+        if (open[i] < best) {
+            best = open[i];
+            at_best = joint;
+        }
+    }
+    const double deep = DIP_DEPTH * best;
+    for (uint32_t i = 0; i <= panels; i++) {
+        const bool is_dip = (i == 0U || open[i] <= open[i - 1U]) && (i == panels || open[i] <= open[i + 1U]);
+        if (is_dip && open[i] <= deep) {
+            const double r = (double)i / (double)panels;
             const double dip = lowest(self, aisle_max(0.0, r - step), aisle_min(1.0, r + step), &joint);
             if (dip < best) {
                 best = dip;
                 at_best = joint;
             }
         }
-        before = here;
-        here = next;
     }
     take(out, best > 0.0 ? 1.0 / sqrt(best) : (double)INFINITY, AISLE_ARM_LIMIT_TORQUE, at_best);
 }
@@ -214,7 +228,7 @@ static void take_torque(const torque_of *self, uint32_t panels, aisle_arm_timing
 void aisle_arm_least_duration(const aisle_arm *arm, const aisle_arm_dynamics *dynamics, const aisle_arm_piece *piece,
                               uint32_t panels, aisle_arm_timing *out) {
     double peaks[3][AISLE_ARM_LINKS];
-    AISLE_ASSERT(panels >= 2U && piece->links == arm->links);
+    AISLE_ASSERT(panels >= 2U && panels <= AISLE_ARM_TIMING_PANELS && piece->links == arm->links);
     *out = (aisle_arm_timing){.duration = 0.0, .limit = AISLE_ARM_LIMIT_NONE, .joint = 0};
     for (uint32_t order = 0; order < 3U; order++) {
         aisle_arm_piece_peaks(piece, order + 1U, peaks[order]);

@@ -62,8 +62,8 @@ typedef struct aisle_arm_timing {
 } aisle_arm_timing;
 
 // Velocity, acceleration and jerk exactly (by roots). Torque: the least 1/T^2 that any joint leaves open, over r: at panels + 1
-// places, and refined by golden section about every one that is lower than its neighbours; exact where no dip is narrower than two
-// panels. panels >= 2. O(panels * links^2).
+// places, and refined by golden section about every one that is lower than its neighbours and at most twice the lowest; exact where no
+// dip is narrower than two panels. panels in [2, AISLE_ARM_TIMING_PANELS]. O(panels * links^2), 1 KiB of stack.
 #define AISLE_ARM_TIMING_PANELS 128U
 void aisle_arm_least_duration(const aisle_arm *arm, const aisle_arm_dynamics *dynamics, const aisle_arm_piece *piece,
                               uint32_t panels, aisle_arm_timing *out);

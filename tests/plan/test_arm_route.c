@@ -126,7 +126,7 @@ static void test_the_papers_search_sets_the_duration_too(void) {
         TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_GA, route.path->planner);
         TEST_ASSERT_GREATER_THAN_UINT32(19000U, route.time->ga.evals);
         aisle_arm_timing exact;
-        aisle_arm_least_duration(&arm, &route.dynamics, &route.plan->piece[0], 1024U, &exact);
+        aisle_arm_least_duration(&arm, &route.dynamics, &route.plan->piece[0], AISLE_ARM_TIMING_PANELS, &exact);
         TEST_ASSERT_DOUBLE_WITHIN(2e-3 * exact.duration, exact.duration, (double)route.path->duration);
         TEST_ASSERT_TRUE((double)route.path->duration >= exact.duration * (1.0 - 1e-6)); // it was proved
     }

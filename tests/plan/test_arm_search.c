@@ -133,7 +133,7 @@ static void test_values_are_what_each_objective_says(void) {
             begin(o, AISLE_OPTIONS_GA, 0);
             cost[o] = aisle_arm_search_cost(&search, &piece);
         }
-        aisle_arm_least_duration(&arm, &search.dynamics, &piece, 1024U, &timing);
+        aisle_arm_least_duration(&arm, &search.dynamics, &piece, AISLE_ARM_TIMING_PANELS, &timing);
         TEST_ASSERT_DOUBLE_WITHIN(2e-3 * travel, travel, (double)cost[AISLE_OPTIONS_SHORTEST].value);
         TEST_ASSERT_DOUBLE_WITHIN(0.05 * travel, travel * (1.0 + risk), (double)cost[AISLE_OPTIONS_SAFEST].value);
         TEST_ASSERT_DOUBLE_WITHIN(2e-3 * timing.duration, timing.duration, (double)cost[AISLE_OPTIONS_FASTEST].value);
