@@ -3,7 +3,7 @@
 #include "../robot/arm_drawn.h"
 #include "arm_hall.h"
 
-enum { SEEDS = 40, FINE = 4000 };
+enum { SEEDS = 24, FINE = 2000 };
 
 static aisle_arm_search search;
 static float risk_weight; // 0: as usual
@@ -98,14 +98,14 @@ static void test_violation_is_0_for_motions_that_are_free_alone_and_deeper_ones_
     hall_add(5.9, 4.4, 6.2, 4.6);
     open_hall();
     begin(AISLE_OPTIONS_SHORTEST, AISLE_OPTIONS_GA, 0);
-    for (uint64_t seed = 0; seed < 4U * SEEDS; seed++) {
+    for (uint64_t seed = 0; seed < 6U * SEEDS; seed++) {
         aisle_arm_piece piece;
         const double least = draw_piece(seed, &piece);
         const aisle_cost_pair cost = aisle_arm_search_cost(&search, &piece);
         TEST_ASSERT_TRUE(cost.violation > 0.0F ? least < 1.1 * AISLE_ARM_KEEP : least >= 0.5 * AISLE_ARM_KEEP);
         free_ones += cost.violation > 0.0F ? 0 : 1;
     }
-    TEST_ASSERT_TRUE(free_ones > 10 && free_ones < 3 * SEEDS);
+    TEST_ASSERT_TRUE(free_ones > 5 && free_ones < 3 * SEEDS);
 }
 static void test_what_is_hit_between_two_samples_is_found_and_told_from_depth(void) {
     aisle_arm_piece piece;
@@ -168,11 +168,11 @@ static int escapes(int8_t objective, int8_t planner, int seeds) {
 static void test_graded_depth_escapes_where_the_death_penalty_seldom_does(void) {
     hall_add(6.35, 4.95, 6.6, 5.05);
     open_hall();
-    const int graded = escapes(AISLE_OPTIONS_SHORTEST, AISLE_OPTIONS_GA, 12);
-    const int swarm = escapes(AISLE_OPTIONS_SHORTEST, AISLE_OPTIONS_PSO, 12);
-    const int paper = escapes(AISLE_OPTIONS_PAPER, AISLE_OPTIONS_GA, 12);
-    TEST_ASSERT_EQUAL_INT(12, graded);
-    TEST_ASSERT_GREATER_OR_EQUAL_INT(11, swarm);
+    const int graded = escapes(AISLE_OPTIONS_SHORTEST, AISLE_OPTIONS_GA, 8);
+    const int swarm = escapes(AISLE_OPTIONS_SHORTEST, AISLE_OPTIONS_PSO, 8);
+    const int paper = escapes(AISLE_OPTIONS_PAPER, AISLE_OPTIONS_GA, 8);
+    TEST_ASSERT_EQUAL_INT(8, graded);
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(7, swarm);
     TEST_ASSERT_LESS_THAN_INT(graded, paper);
 }
 static void test_a_straight_motion_that_is_free_is_never_made_worse(void) {
@@ -197,7 +197,7 @@ static void test_a_straight_motion_that_is_free_is_never_made_worse(void) {
 static void test_the_papers_coefficients_stay_in_its_box(void) {
     hall_add(6.62, 4.97, 6.68, 5.03);
     open_hall();
-    for (int seed = 0; seed < 8; seed++) {
+    for (int seed = 0; seed < 4; seed++) {
         aisle_arm_piece best;
         uint32_t spent = 0;
         begin(AISLE_OPTIONS_PAPER, AISLE_OPTIONS_PSO, seed); // PAPER is GA whatever is named
