@@ -43,6 +43,18 @@ static void measure_body(aisle_space *self) {
     self->disc_radius = sqrt(half * half + side * side) + vehicle->radius;
 }
 
+// Squared cells, rounded down, above 0.
+static uint32_t squared(double cells) {
+    return cells > 0.0 ? (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX) : 0U;
+}
+
+// By the bounds of grid.h, for a place in a corner of its cell and for one in the middle.
+static void measure_cover(aisle_space *self) {
+    const double cells = self->reach / self->grid->lattice.res, spare = 2.0 * AISLE_GRID_SLACK;
+    self->covered_below = squared(cells - 2.0 * HALF_DIAGONAL - spare);
+    self->covered_until = squared(cells - HALF_DIAGONAL) + (cells > HALF_DIAGONAL ? 1U : 0U);
+}
+
 void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisle_vehicle *vehicle,
                        aisle_space_mode mode) {
     self->layout = layout;
@@ -63,6 +75,7 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
     double cells =
         (self->far_clearance + vehicle->outer_radius) / res + 2.0; // 2: to the cell's rim, and from its centre
     self->far_field = (uint32_t)aisle_min(cells * cells, (double)AISLE_FIELD_SQ_MAX);
+    measure_cover(self);
     aisle_space_forget(self);
 }
 
@@ -298,8 +311,11 @@ bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p) {
 
 bool aisle_space_is_covered(const aisle_space *self, aisle_vec2 p) {
     bool inside;
-    (void)aisle_lattice_cell(&self->grid->lattice, p, &inside);
-    return inside && aisle_grid_gap_upper(self->grid, p) < self->reach;
+    const uint32_t field = self->grid->field[aisle_lattice_cell(&self->grid->lattice, p, &inside)];
+    if (!inside || field >= self->covered_until) {
+        return false;
+    }
+    return field < self->covered_below || aisle_grid_gap_upper(self->grid, p) < self->reach;
 }
 
 static double root_of(const aisle_space *self, uint16_t field) {

@@ -37,6 +37,8 @@ typedef struct aisle_space {
     uint32_t known_from, known_end; // words of cell_free outside [known_from, known_end) are 0
     uint32_t far_field;             // a cell of this field value or more is far: nothing there depends on the clearance
     double far_clearance;           // m, what is told of far places
+    uint32_t covered_below;         // a place in a cell of a lower field value is covered,
+    uint32_t covered_until; // in one of this value or more it is not; between them it hangs on where in the cell it is
     double beyond; // m, what an obstacle may lie beyond the centre of its occupied cell; negative where cells are solid
     double lever;  // m, farthest footprint point from the origin, its rounding left out
     double zone_room; // m, that sweeps keep off DIRECTED zones they are against (zones.h); begin() leaves it alone

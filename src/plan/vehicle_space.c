@@ -113,6 +113,9 @@ static void go_straight(void *context, const double *a, const double *b, double 
 // Does one look at the field each say that the end, or a place between, is covered? The ways halved, quartered and so on,
 // until places lie nearer together than what covers them is wide.
 static bool is_surely_blocked(const aisle_vehicle_space *self, aisle_vec2 a, aisle_vec2 b) {
+    if (self->space->covered_until == 0U) { // so small a body covers no cell
+        return false;
+    }
     if (aisle_space_is_covered(self->space, b)) {
         return true;
     }

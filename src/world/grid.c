@@ -177,11 +177,14 @@ uint32_t aisle_grid_rows_done(const aisle_grid *self) {
 // Distance between cell centres, m, and how much a point and an obstacle may each be off theirs. Not inside: *q is 0.
 static double centre_gap(const aisle_grid *self, aisle_vec2 p, bool *inside, uint32_t *q, double *off) {
     AISLE_ASSERT(self->phase == PHASE_DONE);
-    const uint32_t cell = aisle_lattice_cell(&self->lattice, p, inside);
-    *q = *inside ? self->field[cell] : 0U;
-    const double res = self->lattice.res;
-    *off =
-        aisle_vec2_distance(p, aisle_lattice_centre(&self->lattice, cell)) + (HALF_DIAGONAL + AISLE_GRID_SLACK) * res;
+    const aisle_lattice *lattice = &self->lattice;
+    const double res = lattice->res;
+    *inside = true;
+    const uint32_t ix = clamp_index((p.x - lattice->x0) / res, lattice->w, inside);
+    const uint32_t iy = clamp_index((p.y - lattice->y0) / res, lattice->h, inside);
+    const aisle_vec2 centre = {lattice->x0 + ((double)ix + 0.5) * res, lattice->y0 + ((double)iy + 0.5) * res};
+    *q = *inside ? self->field[iy * lattice->w + ix] : 0U;
+    *off = aisle_vec2_distance(p, centre) + (HALF_DIAGONAL + AISLE_GRID_SLACK) * res;
     return sqrt((double)*q) * res;
 }
 

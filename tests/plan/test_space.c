@@ -245,18 +245,23 @@ static void test_clearance_about_follows_the_field_within_a_cell(void) {
     }
 }
 
-static void test_what_is_told_covered_is_too_near_to_an_obstacle(void) {
-    aisle_rng rng = aisle_rng_seed(8);
-    random_hall(&rng);
-    open_space(AISLE_SPACE_FREE_TURN);
+static void test_what_is_told_covered_is_what_the_field_proves(void) {
+    const double radius[4] = {0.002, 0.06, 0.3, 1.2}; // the first two cover no cell of 5 cm, with the margin a few
     int covered = 0, near = 0;
-    for (int i = 0; i < 4000; i++) {
-        aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(0.0, 0.0), aisle_vec2_of(12.0, 9.0));
-        const double gap = (double)hall_disc_gap(p.x, p.y, 0.0) - space.reach;
-        near += gap < -0.25 ? 1 : 0;
-        if (aisle_space_is_covered(&space, p)) {
-            TEST_ASSERT_TRUE(gap < 0.0);
-            covered++;
+    for (int r = 0; r < 4; r++) {
+        aisle_rng rng = aisle_rng_seed(8);
+        random_hall(&rng);
+        hall_disc(radius[r], r == 0 ? -1.0F : 0.02F);
+        open_space(AISLE_SPACE_FREE_TURN);
+        for (int i = 0; i < 4000; i++) {
+            const aisle_vec2 p = uniform_point(&rng, aisle_vec2_of(-0.1, -0.1), aisle_vec2_of(12.1, 9.1));
+            const bool is_out = p.x < 0.0 || p.y < 0.0 || p.x > 12.0 || p.y > 9.0;
+            const double gap = (double)hall_disc_gap(p.x, p.y, 0.0) - space.reach;
+            const bool is_covered = aisle_space_is_covered(&space, p);
+            near += !is_out && gap < -0.25 ? 1 : 0;
+            covered += is_covered ? 1 : 0;
+            TEST_ASSERT_FALSE(is_covered && (is_out || gap >= 0.0));
+            TEST_ASSERT_EQUAL(!is_out && aisle_grid_gap_upper(space.grid, p) < space.reach, is_covered);
         }
     }
     TEST_ASSERT_TRUE(covered >= near && near > 0);
@@ -274,6 +279,6 @@ int main(void) {
     RUN_TEST(test_piece_clearance_is_a_lower_bound_within_its_stated_error_for_every_seed);
     RUN_TEST(test_a_piece_is_free_just_where_its_sampled_gap_is_enough_for_every_seed);
     RUN_TEST(test_clearance_about_follows_the_field_within_a_cell);
-    RUN_TEST(test_what_is_told_covered_is_too_near_to_an_obstacle);
+    RUN_TEST(test_what_is_told_covered_is_what_the_field_proves);
     return UNITY_END();
 }

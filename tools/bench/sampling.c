@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { BLOCK = 160 << 20, CELLS = 1 << 22, NODES = 32768, UNITS = 64, UNITS_FIRST = 16, MARKS = 4 };
+enum { BLOCK = 160 << 20, CELLS = 1 << 22, NODES = 32768, UNITS = 64, UNITS_FIRST = 64, MARKS = 4 };
 enum { FIRST_DRAWS = 32, LINKS = 10 };
 
 static const double marks[MARKS] = {1.0, 5.0, 20.0, 100.0}; // ms
