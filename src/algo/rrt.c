@@ -79,6 +79,37 @@ static bool is_free(aisle_rrt *self, const double *a, const double *b) {
     return space->is_free(space->context, a, b, &self->units);
 }
 
+// Hangs a node on the earliest one before it from which, and from all between, the motion is free; if that is cheaper.
+static void cut_short(aisle_rrt *self, uint32_t n) {
+    const aisle_cspace *space = self->cfg.space;
+    const double *q = aisle_rrt_at(self, n);
+    uint32_t best = AISLE_RRT_NONE;
+    double cost = self->node[n].cost * (1.0 - DRIFT), edge = 0.0;
+    for (uint32_t p = self->node[self->node[n].parent].parent; p != AISLE_RRT_NONE; p = self->node[p].parent) {
+        const double direct = aisle_cspace_cost(space, aisle_rrt_at(self, p), q);
+        if (!is_free(self, aisle_rrt_at(self, p), q)) {
+            break;
+        }
+        if (self->node[p].cost + direct < cost) {
+            best = p;
+            edge = direct;
+            cost = self->node[p].cost + direct;
+        }
+    }
+    if (best != AISLE_RRT_NONE) {
+        hang(self, n, best, edge);
+        pass_cost_on(self, n);
+        self->rewired++;
+    }
+}
+
+// The path, from the goal back.
+static void shorten(aisle_rrt *self) {
+    for (uint32_t n = goal_of(self); self->node[n].parent != AISLE_RRT_NONE; n = self->node[n].parent) {
+        cut_short(self, n);
+    }
+}
+
 // Hangs the goal on a node through which it is cheaper, if it is near enough.
 static void try_goal(aisle_rrt *self, uint32_t n) {
     const aisle_cspace *space = self->cfg.space;
@@ -92,6 +123,9 @@ static void try_goal(aisle_rrt *self, uint32_t n) {
     if (self->node[n].cost + edge < self->node[g].cost && is_free(self, q, goal)) {
         self->rewired += is_reached(self) ? 1U : 0U;
         hang(self, g, n, edge);
+        if (self->cfg.shorten) {
+            shorten(self);
+        }
         if (self->first_sample == AISLE_RRT_NONE) {
             self->first_sample = self->samples;
             self->first_cost = self->node[g].cost;

@@ -7,7 +7,9 @@
 // neighbours that are cheaper through it are hung on it; k = e (1 + 1 / dim) ln n. Adaptive RRT and adaptive RRT* (Ramasamy,
 // Eriksson, Danielsson & Ericsson 2023, doi:10.3390/app132212114, algorithms 2 and 6): where the motion is not free, its
 // first half is tried and kept if it is. Informed sampling (Gammell, Srinivasa & Barfoot 2014, doi:10.1109/IROS.2014.6942976):
-// once a path is known, only configurations are drawn that a cheaper one could run through.
+// once a path is known, only configurations are drawn that a cheaper one could run through. Shortened paths (of RRT*-Smart: Islam,
+// Nasir, Malik, Ayaz & Hasan 2012, doi:10.1109/ICMA.2012.6284384): each node of a path that was found is hung on the earliest one
+// before it that sees it.
 // The paper's fixed planners know steps of one size alone (whole_steps), its adaptive ones adapt theirs. Its plain form is a config with only start, goal, step, halvings (0 or 1), whole_steps and star: nothing else is then done but
 // what its algorithms say. Ours, by config: `halvings` above 1 halves again and again; `goal_bias`; `reach` lets any new
 // node try the goal that is that near; `informed`; `retract`: until there is a path, every other sample that touches something is moved
@@ -36,6 +38,7 @@ typedef struct aisle_rrt_config {
     bool star;         // best parent and rewiring; the run goes on after the first path
     bool informed;     // of a star: sample where a cheaper path may run
     bool retract; // until there is a path, every other sample is moved off what it touches, if the space can do that
+    bool shorten; // each path that is found leaves out those of its nodes that it can, from the goal back
     double goal_bias; // [0, 1), share of samples that are the goal itself
     double reach;     // >= 0, distance from which a new node tries the goal; 0: step. INFINITY: from everywhere
     uint32_t samples; // drawn at most until there is a path, >= 1

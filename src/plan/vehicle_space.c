@@ -241,6 +241,7 @@ aisle_rrt_config aisle_vehicle_space_rrt(const aisle_vehicle_space *self, bool s
     if (!plain) {
         cfg.informed = star;
         cfg.retract = true;
+        cfg.shorten = true;
         cfg.goal_bias = GOAL_BIAS;
         cfg.reach = (double)INFINITY;
     }

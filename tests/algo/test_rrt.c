@@ -125,6 +125,7 @@ static void test_every_planner_finds_a_free_way_through_the_slit(void) {
         for (int kind = 0; kind < 4; kind++) {
             cfg.halvings = (kind & 1) != 0 ? 6U : 0U;
             cfg.star = cfg.informed = kind >= 2;
+            cfg.shorten = cfg.seed % 2U == 0U;
             TEST_ASSERT_EQUAL(AISLE_OK, grow(UINT32_MAX));
             TEST_ASSERT_TRUE(tree.kept == 0U || cfg.halvings > 0U);
             judge_path();
@@ -139,6 +140,7 @@ static void test_a_star_comes_near_the_optimum_and_never_gets_worse(void) {
     cfg.halvings = 6;
     for (cfg.seed = 0; cfg.seed < SEEDS; cfg.seed++) {
         uint32_t spent = 0;
+        cfg.shorten = cfg.seed % 2U == 0U;
         double before = (double)INFINITY;
         TEST_ASSERT_EQUAL(AISLE_OK, aisle_rrt_start(&tree, &cfg));
         while (aisle_rrt_step(&tree, 200, &spent) == AISLE_BUSY) {
@@ -151,6 +153,24 @@ static void test_a_star_comes_near_the_optimum_and_never_gets_worse(void) {
         TEST_ASSERT_TRUE(aisle_rrt_cost(&tree) <= 1.02 * optimum);
         TEST_ASSERT_TRUE(aisle_rrt_cost(&tree) <= tree.first_cost);
     }
+}
+
+static void test_a_path_that_is_shortened_leaves_out_what_it_can(void) {
+    double plain = 0.0, shorter = 0.0;
+    for (cfg.seed = 0; cfg.seed < SEEDS; cfg.seed++) {
+        cfg.shorten = false;
+        TEST_ASSERT_EQUAL(AISLE_OK, grow(UINT32_MAX));
+        const double cost = aisle_rrt_cost(&tree);
+        const uint32_t first = tree.first_sample;
+        cfg.shorten = true;
+        TEST_ASSERT_EQUAL(AISLE_OK, grow(UINT32_MAX));
+        judge_path();
+        TEST_ASSERT_EQUAL_UINT32(first, tree.first_sample); // the same tree until then
+        TEST_ASSERT_TRUE(aisle_rrt_cost(&tree) <= cost);
+        plain += cost;
+        shorter += aisle_rrt_cost(&tree);
+    }
+    TEST_ASSERT_TRUE(shorter < 0.9 * plain);
 }
 
 static void test_costs_may_differ_from_distances_and_by_direction(void) {
@@ -282,6 +302,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_planner_finds_a_free_way_through_the_slit);
     RUN_TEST(test_a_star_comes_near_the_optimum_and_never_gets_worse);
+    RUN_TEST(test_a_path_that_is_shortened_leaves_out_what_it_can);
     RUN_TEST(test_costs_may_differ_from_distances_and_by_direction);
     RUN_TEST(test_in_the_plain_form_a_long_fixed_step_fails_where_half_of_it_gets_through);
     RUN_TEST(test_any_slicing_gives_the_same_tree);
