@@ -118,13 +118,19 @@ aisle_status aisle_roadmap_start(aisle_roadmap *self, const aisle_cspace *space,
     self->edge_tests = self->retested = self->lists_renewed = 0;
     self->phase = AISLE_ROADMAP_DRAW;
     self->at = 0;
+    self->end[0] = config->samples;
+    self->blocks = 1;
+    self->block = 0;
     return AISLE_OK;
 }
 
 aisle_status aisle_roadmap_grow(aisle_roadmap *self, uint32_t samples) {
-    if (self->phase != AISLE_ROADMAP_READY || samples <= self->count || samples > self->capacity) {
+    if (self->phase != AISLE_ROADMAP_READY || samples <= self->count || samples > self->capacity ||
+        self->blocks == AISLE_ROADMAP_BLOCKS) {
         return AISLE_ERR_ARG;
     }
+    self->block = self->blocks;
+    self->end[self->blocks++] = samples;
     self->config.samples = samples;
     self->work = AISLE_ROADMAP_BUILDS;
     self->phase = AISLE_ROADMAP_DRAW;
@@ -150,7 +156,12 @@ static void look_at_draw(aisle_roadmap *self, uint32_t draw, uint32_t *spent) {
 }
 
 static void draw_one(aisle_roadmap *self, uint32_t *spent) {
-    self->space->sample(self->space->context, &self->rng, config_at(self, self->at));
+    const aisle_cspace *space = self->space;
+    space->sample(space->context, &self->rng, config_at(self, self->at));
+    if (self->config.uniform > 0U && self->at >= self->config.uniform && self->at % 2U == 0U &&
+        space->retract != NULL) {
+        space->retract(space->context, config_at(self, self->at));
+    }
     self->degree[self->at] = 0;
     look_at_draw(self, self->at, spent);
     self->count = ++self->at;
@@ -178,6 +189,14 @@ static void touch_draw(aisle_roadmap *self, uint32_t *spent) {
     }
 }
 
+static uint32_t end_of_block(const aisle_roadmap *self, uint32_t draw) {
+    uint32_t block = 0;
+    while (self->end[block] <= draw) {
+        block++;
+    }
+    return self->end[block];
+}
+
 // Do draws that came or left change this node's list? Only asked in repairs.
 static bool is_list_stale(const aisle_roadmap *self, uint32_t node, uint32_t *spent) {
     const uint16_t *list = self->list + node * self->k;
@@ -193,8 +212,9 @@ static bool is_list_stale(const aisle_roadmap *self, uint32_t node, uint32_t *sp
     const double *q = config_at(self, node);
     const double last =
         degree == self->k ? aisle_cspace_distance(self->space, q, config_at(self, list[degree - 1U])) : 0.0;
+    const uint32_t end = end_of_block(self, node); // later ones are not in its list
     *spent += self->came / 8U;
-    for (uint32_t i = 0; i < self->came; i++) {
+    for (uint32_t i = 0; i < self->came && self->node_of[i] < end; i++) { // they came in order
         if (degree < self->k || aisle_cspace_distance(self->space, q, config_at(self, self->node_of[i])) <= last) {
             return true;
         }
@@ -339,29 +359,52 @@ static void test_row(aisle_roadmap *self, uint32_t *spent) {
     }
 }
 
-// What comes after the phase that is done.
-static aisle_roadmap_phase phase_after(const aisle_roadmap *self) {
+// After the last block of an index or of lists.
+static aisle_roadmap_phase phase_after_blocks(const aisle_roadmap *self) {
+    return self->work == AISLE_ROADMAP_COPIES ? AISLE_ROADMAP_READY : AISLE_ROADMAP_REVERSE;
+}
+
+// What comes after the phase that is done. Each block is indexed, then joined to what is indexed by then.
+static aisle_roadmap_phase phase_after(aisle_roadmap *self) {
     switch (self->phase) {
     case AISLE_ROADMAP_TOUCH:
         return self->came + self->left > 0U ? AISLE_ROADMAP_JUDGE : AISLE_ROADMAP_DOUBT;
     case AISLE_ROADMAP_INDEX:
-        return self->work == AISLE_ROADMAP_COPIES ? AISLE_ROADMAP_READY : AISLE_ROADMAP_CONNECT;
+        if (self->work != AISLE_ROADMAP_COPIES) {
+            return AISLE_ROADMAP_CONNECT;
+        }
+        self->block++;
+        return self->block < self->blocks ? AISLE_ROADMAP_INDEX : phase_after_blocks(self);
+    case AISLE_ROADMAP_CONNECT:
+        self->block++;
+        return self->block < self->blocks ? AISLE_ROADMAP_INDEX : phase_after_blocks(self);
     case AISLE_ROADMAP_REVERSE:
         return self->work == AISLE_ROADMAP_REPAIRS ? AISLE_ROADMAP_DOUBT
                                                    : (self->config.eager ? AISLE_ROADMAP_TEST : AISLE_ROADMAP_READY);
     case AISLE_ROADMAP_DOUBT:
         return self->config.eager ? AISLE_ROADMAP_TEST : AISLE_ROADMAP_READY;
-    case AISLE_ROADMAP_DRAW:
     case AISLE_ROADMAP_JUDGE:
+        self->block = 0;
         return AISLE_ROADMAP_INDEX;
-    case AISLE_ROADMAP_CONNECT:
-        return AISLE_ROADMAP_REVERSE;
+    case AISLE_ROADMAP_DRAW:
+        return AISLE_ROADMAP_INDEX;
     default:
         return AISLE_ROADMAP_READY;
     }
 }
 
+static bool is_by_block(const aisle_roadmap *self) {
+    return self->phase == AISLE_ROADMAP_INDEX || self->phase == AISLE_ROADMAP_CONNECT;
+}
+
+static uint32_t begin_of_phase(const aisle_roadmap *self) {
+    return is_by_block(self) && self->block > 0U ? self->end[self->block - 1U] : 0U;
+}
+
 static uint32_t end_of_phase(const aisle_roadmap *self) {
+    if (is_by_block(self)) {
+        return self->end[self->block];
+    }
     switch (self->phase) {
     case AISLE_ROADMAP_DRAW:
         return self->config.samples;
@@ -413,7 +456,7 @@ aisle_status aisle_roadmap_step(aisle_roadmap *self, uint32_t units, uint32_t *s
         step_one(self, spent);
         if (self->at >= end_of_phase(self)) {
             self->phase = phase_after(self);
-            self->at = 0;
+            self->at = begin_of_phase(self);
         }
     }
     return self->phase == AISLE_ROADMAP_READY ? AISLE_OK : AISLE_BUSY;
@@ -437,6 +480,9 @@ void aisle_roadmap_copy(aisle_roadmap *self, const aisle_roadmap *other, const a
     memcpy(self->known, other->known, places);
     memcpy(self->from, other->from, (n + 1U) * sizeof *self->from);
     memcpy(self->back, other->back, (size_t)other->from[n] * sizeof *self->back);
+    memcpy(self->end, other->end, sizeof self->end);
+    self->blocks = other->blocks;
+    self->block = 0;
     self->work = AISLE_ROADMAP_COPIES;
     self->phase = AISLE_ROADMAP_INDEX;
     self->at = 0;

@@ -11,13 +11,17 @@
 //         when a search first comes to its end by it, as in lazy weighted A* (Cohen, Phillips, Likhachev 2014,
 //         doi:10.15607/RSS.2014.X.034): if it is blocked the node goes on by the next best edge from a node that is
 //         done with. Each edge is tested once, and the way found is the same as with all tested before;
+//     blocks: where more is drawn, the new nodes are joined to their k nearest of all so far, and the old ones' lists stay,
+//         as in the paper where each node is joined to those before it: long motions of when nodes were few stay, by which
+//         a roadmap hangs together sooner. Every other draw of the later blocks may be moved off what it touches when it
+//         is drawn (config.uniform), so that slits get draws; it stays where it is when the space changes;
 //     repair: a change of the space, told as which motions it may touch, tests only the draws and edges it touches
 //         again, and only lists of neighbours with a draw in them that came or left are made anew. Repaired and built
 //         anew have the same nodes, lists and free edges.
 // An edge is in the list of either of its ends, or both. Where is_free() may differ from a to b and from b to a
 // (config.one_way) both are tested and kept apart.
 //
-// Memory: for each draw 8 dim + 7 bytes, 7 for each of its k edges, and the index (near.h); a search 31 a draw, which
+// Memory: for each draw 8 dim + 8 bytes, 7 for each of its k edges, and the index (near.h); a search 31 a draw, which
 // others may use between queries. Nothing is allocated. Time: building O(n (k + log n)) and, eager, up to n k tests;
 // a query O(nodes seen * (degree + log n)) and its tests; a repair O(n k touches()) and its tests. Each in slices.
 // Determinism: same space, config and changes give the same bits however cut into steps; ties by index.
@@ -31,6 +35,7 @@
 
 #define AISLE_ROADMAP_SAMPLES_MAX 65000U
 #define AISLE_ROADMAP_K_MAX 32U
+#define AISLE_ROADMAP_BLOCKS 16U // that draws come in: one, and one for each growth
 #define AISLE_ROADMAP_NONE UINT32_MAX
 
 // Does what has changed matter to the motion from a to b (a = b: to this configuration)? May say yes where it does not.
@@ -45,8 +50,9 @@ typedef enum aisle_roadmap_known { // of a motion
 typedef struct aisle_roadmap_config {
     uint32_t samples; // draws, [1, capacity]
     uint64_t seed;
-    bool eager;   // test every edge while building
-    bool one_way; // is_free() hangs on the direction
+    uint32_t uniform; // draws, then every other one is moved off what it touches (cspace.h); 0: none is
+    bool eager;       // test every edge while building
+    bool one_way;     // is_free() hangs on the direction
 } aisle_roadmap_config;
 
 typedef enum aisle_roadmap_phase {
@@ -88,12 +94,15 @@ typedef struct aisle_roadmap {
     aisle_roadmap_touch_fn touches;
     void *touch_context;
     aisle_roadmap_phase phase;
-    uint32_t at;             // in the phase
-    uint32_t came, left;     // draws, by the repair under way
-    aisle_roadmap_work work; // under way or done last
-    uint32_t edge_tests;     // calls of is_free() for edges of the roadmap
-    uint32_t retested;       // draws and edges that repairs have put in doubt
-    uint32_t lists_renewed;  // by repairs
+    uint32_t
+        end[AISLE_ROADMAP_BLOCKS]; // draws at the end of each block: those to begin with, then those of each growth
+    uint32_t blocks, block;        // how many; whose neighbours are looked for
+    uint32_t at;                   // in the phase
+    uint32_t came, left;           // draws, by the repair under way
+    aisle_roadmap_work work;       // under way or done last
+    uint32_t edge_tests;           // calls of is_free() for edges of the roadmap
+    uint32_t retested;             // draws and edges that repairs have put in doubt
+    uint32_t lists_renewed;        // by repairs
 } aisle_roadmap;
 
 // For `samples` draws in [1, AISLE_ROADMAP_SAMPLES_MAX] of `dim` numbers and k in [1, AISLE_ROADMAP_K_MAX] nearest. Usable
@@ -104,7 +113,8 @@ void aisle_roadmap_carve(aisle_roadmap *self, aisle_arena *arena, uint32_t dim, 
 // out of range or the space has more dimensions; self is unchanged.
 aisle_status aisle_roadmap_start(aisle_roadmap *self, const aisle_cspace *space, const aisle_roadmap_config *config);
 
-// When it is ready: goes on to so many draws, more than there are; edges that stay keep what is known of them.
+// When it is ready: goes on to so many draws, more than there are. AISLE_ERR_ARG, nothing changed: they are not more, too
+// many, or it has grown AISLE_ROADMAP_BLOCKS - 1 times.
 aisle_status aisle_roadmap_grow(aisle_roadmap *self, uint32_t samples);
 
 // When it is ready: the space has changed where `touches` says so; begins to repair. context lives until it is ready.

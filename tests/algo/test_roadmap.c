@@ -232,6 +232,75 @@ static bool is_same_map(const aisle_roadmap *a, const aisle_roadmap *b) {
 
 // ---- tests
 
+static const uint32_t blocks[3] = {50, 180, DRAWS}; // ends
+
+static void build_grown(aisle_roadmap *self, int which, aisle_roadmap_config config, uint32_t slice) {
+    config.samples = blocks[0];
+    build(self, which, config);
+    for (int i = 1; i < 3; i++) {
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_roadmap_grow(self, blocks[i]));
+        finish_in(self, slice);
+    }
+}
+
+static void test_what_is_grown_is_joined_to_all_so_far_and_old_lists_stay(void) {
+    make_hall(2, 21);
+    for (int i = 0; i < 2; i++) {
+        const aisle_roadmap_config config = i == 0 ? lazy : eager;
+        build_grown(&map, 0, config, i == 0 ? 17U : 1U);
+        build(&other, 1, config);
+        TEST_ASSERT_EQUAL_MEMORY(other.q, map.q, DRAWS * 2U * sizeof *map.q);
+        TEST_ASSERT_EQUAL_UINT32(other.free_count, map.free_count);
+        for (uint32_t row = 0; row < map.count; row++) {
+            aisle_roadmap until = map; // the draws that were there then
+            until.count = row < blocks[0] ? blocks[0] : row < blocks[1] ? blocks[1] : blocks[2];
+            TEST_ASSERT_EQUAL_UINT32(aisle_roadmap_is_node(&map, row) ? K : 0U, map.degree[row]);
+            for (uint32_t k = 0; k < map.degree[row]; k++) {
+                const double distance = apart(at(&map, row), at(&map, map.list[row * K + k]));
+                TEST_ASSERT_TRUE(map.list[row * K + k] < until.count);
+                TEST_ASSERT_EQUAL_UINT32(k, nearer(&until, at(&map, row), distance, row));
+            }
+        }
+    }
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_roadmap_grow(&map, DRAWS));
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_roadmap_grow(&map, DRAWS + 1));
+}
+
+static void test_it_grows_no_more_often_than_it_has_blocks(void) {
+    make_hall(2, 21);
+    aisle_roadmap_config config = lazy;
+    config.samples = 10;
+    build(&map, 0, config);
+    for (uint32_t i = 1; i < AISLE_ROADMAP_BLOCKS; i++) {
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_roadmap_grow(&map, 10U + i));
+        finish_in(&map, 1000);
+    }
+    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_roadmap_grow(&map, DRAWS));
+}
+
+static void to_the_left(void *context, double *q) {
+    (void)context;
+    q[0] = space.lo[0];
+}
+
+static void test_every_other_draw_beyond_the_uniform_ones_is_retracted(void) {
+    make_hall(2, 23);
+    build(&other, 1, lazy);
+    space.retract = to_the_left;
+    build(&map, 0, lazy);
+    TEST_ASSERT_EQUAL_MEMORY(other.q, map.q, DRAWS * 2U * sizeof *map.q);
+    aisle_roadmap_config config = lazy;
+    config.uniform = 101;
+    build(&map, 0, config);
+    space.retract = NULL;
+    for (uint32_t row = 0; row < DRAWS; row++) {
+        const bool is_moved = row >= 101U && row % 2U == 0U;
+        TEST_ASSERT_TRUE(at(&map, row)[0] <= (is_moved ? space.lo[0] : at(&other, row)[0]));
+        TEST_ASSERT_TRUE(at(&map, row)[0] >= (is_moved ? space.lo[0] : at(&other, row)[0]));
+        TEST_ASSERT_EQUAL_MEMORY(at(&other, row) + 1, at(&map, row) + 1, sizeof(double));
+    }
+}
+
 static void test_lists_hold_the_k_nearest_free_draws(void) {
     for (uint32_t dim = 2; dim <= 3; dim++) {
         make_hall(dim, 11 + dim);
@@ -353,7 +422,8 @@ static void test_a_repaired_roadmap_is_one_built_anew(void) {
         for (int i = 0; i < BOXES; i++) {
             hall.one_way[i] = config.one_way && i % 4 != 0;
         }
-        build(&map, 0, config);
+        const bool is_grown = seed % 2U == 1U;
+        is_grown ? build_grown(&map, 0, config, 1000) : build(&map, 0, config);
         for (int change = 0; change < 8; change++) {
             const int i = (int)(draw() * BOXES);
             const uint32_t before = map.edge_tests;
@@ -361,7 +431,7 @@ static void test_a_repaired_roadmap_is_one_built_anew(void) {
             hall.one_way[i] = config.one_way && change % 2 == 0;
             aisle_roadmap_repair(&map, box_matters, hall.box[i]);
             finish_in(&map, 1U + (uint32_t)change * 13U);
-            build(&other, 1, config);
+            is_grown ? build_grown(&other, 1, config, 1000) : build(&other, 1, config);
             TEST_ASSERT_TRUE(is_same_map(&map, &other));
             by_few += map.edge_tests - before < other.edge_tests / 2U ? 1 : 0;
         }
@@ -408,23 +478,6 @@ static void test_what_is_far_from_a_change_is_not_tested_again(void) {
     finish_in(&map, UINT32_MAX);
     TEST_ASSERT_LESS_THAN_UINT32(edges / 20U, hall.asked);
     TEST_ASSERT_GREATER_THAN_UINT32(0, hall.asked);
-}
-
-static void test_grown_is_the_same_as_built_at_once(void) {
-    make_hall(2, 21);
-    for (int i = 0; i < 2; i++) {
-        aisle_roadmap_config config = i == 0 ? lazy : eager;
-        config.samples = 50;
-        build(&map, 0, config);
-        TEST_ASSERT_EQUAL(AISLE_OK, aisle_roadmap_grow(&map, 180));
-        finish_in(&map, 17);
-        TEST_ASSERT_EQUAL(AISLE_OK, aisle_roadmap_grow(&map, DRAWS));
-        finish_in(&map, 1);
-        build(&other, 1, i == 0 ? lazy : eager);
-        TEST_ASSERT_TRUE(is_same_map(&map, &other));
-    }
-    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_roadmap_grow(&map, DRAWS));
-    TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_roadmap_grow(&map, DRAWS + 1));
 }
 
 static void test_a_copy_answers_alike_and_leaves_the_other_alone(void) {
@@ -503,7 +556,9 @@ int main(void) {
     RUN_TEST(test_a_repaired_roadmap_is_one_built_anew);
     RUN_TEST(test_a_lazy_repair_leaves_nothing_known_that_is_not_so);
     RUN_TEST(test_what_is_far_from_a_change_is_not_tested_again);
-    RUN_TEST(test_grown_is_the_same_as_built_at_once);
+    RUN_TEST(test_what_is_grown_is_joined_to_all_so_far_and_old_lists_stay);
+    RUN_TEST(test_it_grows_no_more_often_than_it_has_blocks);
+    RUN_TEST(test_every_other_draw_beyond_the_uniform_ones_is_retracted);
     RUN_TEST(test_a_copy_answers_alike_and_leaves_the_other_alone);
     RUN_TEST(test_any_slicing_gives_the_same_bits);
     RUN_TEST(test_bad_configs_are_refused_and_change_nothing);

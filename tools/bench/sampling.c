@@ -16,10 +16,11 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 enum { BLOCK = 160 << 20, CELLS = 1 << 22, NODES = 32768, UNITS = 64, UNITS_FIRST = 64, MARKS = 4 };
-enum { FIRST_DRAWS = 32, LINKS = 10 };
+enum { FIRST_DRAWS = 8, LINKS = 10 };
 
 static const double marks[MARKS] = {1.0, 5.0, 20.0, 100.0}; // ms
 static hall scene;
@@ -29,7 +30,7 @@ static aisle_rrt tree;
 static uint32_t path[NODES + 1];
 static aisle_roadmap roadmap;
 static aisle_roadmap_search search;
-static double way[2 * (NODES + 1)];
+static double way[2 * (NODES + 1)], best_way[2 * (NODES + 1)];
 static double cap; // ms, 0: none
 
 static double ms_now(void) {
@@ -121,31 +122,58 @@ static void grow_tree(const aisle_rrt_config *cfg) {
     print_outcome(&o, cfg->seed, tree.near.count, found ? (double)tree.first_sample : (double)INFINITY, count);
 }
 
-// The shortest way through the roadmap as it is.
-static double ask(const aisle_rrt_config *cfg, uint32_t *units) {
+// Leaves out of the way what it can, as route_sample.c does; how many are left.
+static uint32_t cut_way(const aisle_cspace *within, uint32_t count, uint32_t *units) {
+    uint32_t kept = count > 0U ? 1U : 0U;
+    for (uint32_t at = 1; at < count; at++) {
+        if (at + 1U == count ||
+            !within->is_free(within->context, way + 2U * (kept - 1U), way + 2U * (at + 1U), units)) {
+            way[2U * kept] = way[2U * at];
+            way[2U * kept + 1U] = way[2U * at + 1U];
+            kept++;
+        }
+    }
+    return kept;
+}
+
+static double length_of_way(const aisle_cspace *within, uint32_t count) {
+    double length = 0.0;
+    for (uint32_t i = 1; i < count; i++) {
+        length += aisle_cspace_distance(within, way + 2U * i - 2U, way + 2U * i);
+    }
+    return length;
+}
+
+// The shortest way through the roadmap as it is, cut; what is the best so far is kept in best_way.
+static double ask(const aisle_rrt_config *cfg, double best, uint32_t *best_count, uint32_t *units) {
     aisle_roadmap_ask(&search, &roadmap, AISLE_ROADMAP_ASTAR, cfg->start, cfg->goal, units);
     while (aisle_roadmap_search_step(&search, UNITS, units) == AISLE_BUSY) {
     }
-    return aisle_roadmap_cost(&search);
+    const uint32_t count = cut_way(cfg->space, aisle_roadmap_way(&search, way, NODES + 1), units);
+    const double length = count > 0U ? length_of_way(cfg->space, count) : (double)INFINITY;
+    if (length < best) {
+        memcpy(best_way, way, 2U * count * sizeof way[0]);
+        *best_count = count;
+    }
+    return length;
 }
 
 static void grow_roadmap(const aisle_rrt_config *cfg) {
-    const aisle_roadmap_config draws = {.samples = FIRST_DRAWS, .seed = cfg->seed};
+    const aisle_roadmap_config draws = {.samples = FIRST_DRAWS, .uniform = FIRST_DRAWS, .seed = cfg->seed};
     outcome o = begin();
     uint32_t first_draws = 0, count = 0;
     (void)aisle_roadmap_start(&roadmap, cfg->space, &draws);
     for (double now = 0.0;;) {
         while (aisle_roadmap_step(&roadmap, UNITS, &o.units) == AISLE_BUSY) {
         }
-        const double length = ask(cfg, &o.units);
-        count = length < o.best ? aisle_roadmap_way(&search, way, NODES + 1) : count;
-        now = note(&o, length);
+        now = note(&o, ask(cfg, o.best, &count, &o.units));
         first_draws = first_draws == 0U && o.best < 1e300 ? roadmap.count : first_draws;
         if ((o.best < 1e300 && now >= cap) || (cap > 0.0 && now > 60.0 * cap) ||
             aisle_roadmap_grow(&roadmap, 2U * roadmap.count) != AISLE_OK) {
             break;
         }
     }
+    memcpy(way, best_way, 2U * count * sizeof way[0]);
     print_outcome(&o, cfg->seed, roadmap.free_count, first_draws > 0U ? (double)first_draws : (double)INFINITY, count);
 }
 
