@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a remembered answer costs beside planning it: milliseconds of the same queries in the same run, by aisle-replay.
 
-build/venv/bin/python tools/bench/cache_table.py [folder] [--only NAME] [--objective NAME] [--repeat N] [--json FILE]
+build/venv/bin/python tools/bench/cache_table.py [folder] [--only NAME] [--objective NAME] [--planner NAME] [--repeat N] [--json FILE]
 
 plan: every run planned (remember = no). hit: remembered, nothing changed since its proof. proved: remembered, proved as a
 whole since the layout has another revision. Each is the median over the runs of all legs; target: hit 100 times faster.
@@ -10,6 +10,7 @@ whole since the layout has another revision. Each is the median over the runs of
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import sys
 import tempfile
@@ -27,22 +28,23 @@ KINDS = {"plan": [], "hit": ["--cached"], "proved": ["--cached", "--proofs"]}
 def main() -> int:
     args = parse()
     names = sorted(json.loads((args.folder / "optimum.json").read_text()))
-    print(f"{'scenario':<14} {'objective':<12} {'plan ms':>9} {'hit ms':>9} {'ratio':>8} {'proved ms':>9} {'ratio':>8}")
+    print(f"{'scenario':<14} {'planner':<18} {'objective':<12} {'plan ms':>9} {'hit ms':>9} {'ratio':>8} {'proved ms':>9} {'ratio':>8}")
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for name in (n for n in names if not args.only or n in args.only):
             scenario = read_scenario(args.folder / f"{name}.json", args.margin)
-            for objective in args.objective or OBJECTIVES:
-                log = write_log(args, Path(folder), scenario, objective)
-                rows.append({"scenario": name, "objective": objective, **measure(args, log)})
+            for planner, objective in itertools.product(args.planner or ("auto",), args.objective or OBJECTIVES):
+                log = write_log(args, Path(folder), scenario, objective, planner)
+                rows.append({"scenario": name, "planner": planner, "objective": objective, **measure(args, log)})
                 print_row(rows[-1])
     if args.json is not None:
         args.json.write_text(json.dumps(rows, indent=1) + "\n")
-    for kind in ("hit", "proved"):
-        ratios = sorted(r["plan"] / r[kind] for r in rows)
+    for planner, kind in itertools.product(args.planner or ("auto",), ("hit", "proved")):
+        of_it = [r for r in rows if r["planner"] == planner]
+        ratios = sorted(r["plan"] / r[kind] for r in of_it)
         fast = sum(r >= TARGET for r in ratios)
-        print(f"{kind}: {fast} of {len(ratios)} at least {TARGET:.0f} times faster; least {ratios[0]:.1f}, "
-              f"median {offline.median(ratios):.0f}, sums {sum(r['plan'] for r in rows) / sum(r[kind] for r in rows):.0f}")
+        print(f"{planner}, {kind}: {fast} of {len(ratios)} at least {TARGET:.0f} times faster; least {ratios[0]:.1f}, median "
+              f"{offline.median(ratios):.0f}, sums {sum(r['plan'] for r in of_it) / sum(r[kind] for r in of_it):.0f}")
     return 0
 
 
@@ -52,6 +54,8 @@ def parse() -> argparse.Namespace:
     parser.add_argument("folder", type=Path, nargs="?", default=root / "tests" / "data" / "scenarios")
     parser.add_argument("--only", metavar="NAME", action="append", help="only these scenarios")
     parser.add_argument("--objective", choices=OBJECTIVES, action="append", help="only these objectives")
+    parser.add_argument("--planner", metavar="NAME", action="append", help="by these planners (auto); PRM plans on the roadmap "
+                        "that the runs before left")
     parser.add_argument("--replay", type=Path, default=root / "build" / "release" / "aisle-replay", metavar="PROGRAM")
     parser.add_argument("--repeat", type=int, default=20, metavar="N", help="runs of each query and round (hits: 10 N)")
     parser.add_argument("--margin", type=float, default=-1.0, help="m; negative = none")
@@ -76,7 +80,7 @@ def median_ms(replay: Path, log: Path, repeat: int, options: list[str]) -> float
 
 
 def print_row(row: dict) -> None:
-    print(f"{row['scenario']:<14} {row['objective']:<12} {row['plan']:>9.4f} {row['hit']:>9.4f} "
+    print(f"{row['scenario']:<14} {row['planner']:<18} {row['objective']:<12} {row['plan']:>9.4f} {row['hit']:>9.4f} "
           f"{row['plan'] / row['hit']:>8.1f} {row['proved']:>9.4f} {row['plan'] / row['proved']:>8.1f}", flush=True)
 
 

@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
 """The sampling planners beside OMPL's of the same name: the first path, and lengths as time goes by, in one run.
 
-build/venv/bin/python tools/bench/sampling_table.py [folder] [--only NAME] [--seeds 30] [--cap 0.1] [--no-ompl] [--steps]
+build/venv/bin/python tools/bench/sampling_table.py [folder] [--only NAME] [--seeds 30] [--cap 0.1] [--no-ompl]
+    [--namesakes] [--steps]
 
-Disc robots (of others the disc in which they turn), margin none, every leg; the planners alone, nothing simplified, no proof,
-the layout in force. Both sides test every motion exactly and keep the same radius: the disc's and the half millimetre that
-ours keeps for the proof; every path is measured again here. Milliseconds are the processor's, to the first path: median and
-p99 over the seeds (a seed without a path within --cap s counts as that, ours going on as long). Lengths: the median of the
-seeds, none where half have no path. `x`: OMPL's median over ours, `p99 x` the same of p99. Ours: what `planner` does by
-itself (steps of a fifth of the hall's diagonal, goal bias 0.05, each new node tries the goal, stars informed; PRM lazy, 10
-neighbours); OMPL's: its own defaults (steps of a fifth, goal bias 0.05, PRM 10 neighbours). RRTConnect, InformedRRTstar,
-BITstar and PRMstar have no namesake and stand beside the others. Bytes: of a node.
+Disc robots (of others the disc in which they turn), margin none, every leg; the planners alone, no proof, the layout in
+force; nothing is simplified but what ours do by themselves. Both sides test every motion exactly and keep the same radius:
+the disc's and the half millimetre that ours keeps for the proof; every path is measured again here. Milliseconds are the
+processor's, to the first path: median and p99 over the seeds (a seed without a path within --cap s counts as that, ours going
+on as long). Lengths: the median of the seeds, none where half have no path. `x`: OMPL's median over ours, `p99 x` the same of
+p99. Ours: what `planner` does by itself (steps of a fifth of the hall's diagonal, goal bias 0.05, each new node tries the
+goal, stars informed, paths leave out nodes that they can; PRM lazy, 10 neighbours, from 8 draws on, doubled: by name it begins
+with more, for the queries to come); OMPL's: its own defaults (steps of a fifth, goal bias 0.05, PRM 10 neighbours). RRTConnect,
+InformedRRTstar, BITstar and PRMstar have no namesake and stand beside the others. Bytes: of a node.
 
 --steps: the paper's plain form alone (no goal bias, whole steps for the fixed planners, one halving for the adaptive ones)
 over the step, on the slits: seeds with a path within 100,000 samples.
@@ -42,7 +44,7 @@ OURS = {
 }
 NAMESAKE = {"RRT": "RRT", "RRT_ADAPTIVE": "RRT", "RRT_STAR": "RRTstar", "RRT_STAR_ADAPTIVE": "RRTstar", "PRM": "PRM"}
 THEIRS = ("RRT", "RRTConnect", "RRTstar", "InformedRRTstar", "BITstar", "PRM", "PRMstar")
-BYTES = {"RRT": 82, "RRT_ADAPTIVE": 82, "RRT_STAR": 82, "RRT_STAR_ADAPTIVE": 82, "PRM": 174}  # algo/rrt.h, algo/roadmap.h
+BYTES = {"RRT": 82, "RRT_ADAPTIVE": 82, "RRT_STAR": 82, "RRT_STAR_ADAPTIVE": 82, "PRM": 175}  # algo/rrt.h, algo/roadmap.h
 MARKS = (1, 5, 20, 100)  # ms
 TARGET = 3.0
 NOISE = 1e-4  # of a length
@@ -117,7 +119,8 @@ def compare(args: argparse.Namespace, path: Path, leg: int, ompl: Path | None) -
     pair = (*stops[leg][:2], *stops[leg + 1][:2])
     title = path.stem + (f" {leg + 1}" if len(stops) > 2 else "")
     rows: dict = {"scenario": title, "ours": {}, "ompl": {}}
-    for name in THEIRS if ompl is not None else ():
+    peers_asked = sorted(set(NAMESAKE.values())) if args.namesakes else THEIRS
+    for name in peers_asked if ompl is not None else ():
         runs = theirs(ompl, raw, scenario.world.bounds, name, pair, args.seeds, args.cap)
         check_paths(runs, raw, pair, f"{title}: OMPL {name}")
         rows["ompl"][name] = summary(runs, args.cap)
@@ -193,6 +196,7 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=30)
     parser.add_argument("--cap", type=float, default=0.1, help="s for each run")
     parser.add_argument("--no-ompl", action="store_true")
+    parser.add_argument("--namesakes", action="store_true", help="of OMPL's planners only those of the same names")
     parser.add_argument("--steps", action="store_true", help="the paper's plain form over the step")
     parser.add_argument("--program", type=Path, default=offline.ROOT / "build" / "release" / "bench-sampling")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows as JSON too")
