@@ -37,6 +37,8 @@
 //     SHORTEST      it is longer than that bound by at most AISLE_CACHE_REPAIR of it: surely no way is shorter by more
 //     others        it is worse by at most that part of what the path was worth when it was planned, whatever repairs came
 //                   between: the most that planning anew could win if the path was the best there was
+// or, of a tree's answer, whose gap is closed by a tree again, if it is worse than what the path was worth by at most
+// AISLE_CACHE_REPAIR_TREE of that: 10 %, since such answers differ by more from seed to seed, and none is told to be the best.
 // 1 %, since SHORTEST answers are held to 1.01 times the optimum at worst. A longer detour may mean that another way round
 // is the best one by now, which the free pieces do not tell.
 //
@@ -57,7 +59,8 @@
 #define AISLE_CACHE_PATH_BYTES 8192U // of key and path, on average
 #define AISLE_CACHE_BLOCK 508U       // bytes of them in one block
 #define AISLE_CACHE_NONE UINT32_MAX
-#define AISLE_CACHE_REPAIR 0.01 // part of its worth that a repaired answer may be worse by
+#define AISLE_CACHE_REPAIR 0.01     // part of its worth that a repaired answer may be worse by
+#define AISLE_CACHE_REPAIR_TREE 0.1 // of an answer of planner RRT to RRT_STAR_ADAPTIVE
 
 typedef struct aisle_cache_question {
     const aisle_goal_msg *start, *goals; // goals[num_goals] as they were asked

@@ -176,7 +176,11 @@ typedef struct aisle_route_guide { // a way that is none for the body as it is; 
     double reach;                  // m, the disc's that it is a way for, with what it keeps
 } aisle_route_guide;
 
-typedef enum aisle_route_repair_phase { AISLE_ROUTE_REPAIR_LOOK, AISLE_ROUTE_REPAIR_SEARCH } aisle_route_repair_phase;
+typedef enum aisle_route_repair_phase {
+    AISLE_ROUTE_REPAIR_LOOK,
+    AISLE_ROUTE_REPAIR_SEARCH,
+    AISLE_ROUTE_REPAIR_TREE // in its place
+} aisle_route_repair_phase;
 
 typedef struct aisle_route_repair { // of the answer in `decoded`
     aisle_route_repair_phase phase;

@@ -7,7 +7,8 @@
 #include <string.h>
 
 // A remembered answer that a new obstacle stands on: the waypoints of each leg as a polyline about its arcs, what is blocked
-// of it replaced by the shortest way of a disc between free places before and behind.
+// of it replaced by the shortest way of a disc between free places before and behind; of a tree's answer by the way that a
+// tree of the same kind finds between them.
 
 #define SHARE 4U      // a quarter of the budget at most: what is left can still plan
 #define TURN_MAX 1.05 // rad, of one corner that stands for arcs
@@ -17,6 +18,7 @@
 #define BOUND_SPARE 1.01e-3 // m, by which freed ground may have bettered each leg unseen (cache.c)
 #define TOLD 7e-3           // m
 #define CREEP_SPARE 2e-3    // m, as in route_ways.c
+#define MORE_SHARE 8U       // of the samples that a star draws after its first path, for a piece of one
 
 // Plans from nothing, as if nothing had been remembered.
 static aisle_status give_up(aisle_route *self) {
@@ -40,9 +42,17 @@ static bool can_be_polylines(const aisle_route *self) {
     return path->num_waypoints > 1;
 }
 
+// Of the trees, whose places are those of a disc. A roadmap is repaired itself (roadmap_keep.h).
+static bool is_by_tree(const aisle_route *self) {
+    return aisle_route_is_sampling(self) && self->request.options.planner != AISLE_OPTIONS_PRM;
+}
+
 // A disc's shortest way is planned with less work than a repair takes.
 static bool is_wanted(const aisle_route *self) {
     const aisle_options_msg *options = &self->request.options;
+    if (is_by_tree(self)) {
+        return options->objective != AISLE_OPTIONS_PAPER && !aisle_route_has_heading(self);
+    }
     const bool planner = options->planner == AISLE_OPTIONS_AUTO || options->planner == AISLE_OPTIONS_ASTAR;
     const bool is_quick = options->objective == AISLE_OPTIONS_SHORTEST && aisle_vehicle_is_disc(self->vehicle);
     return planner && !is_quick && !(self->vehicle->curvature_max > 0.0) && aisle_layout_has_blocks(self->layout);
@@ -168,7 +178,27 @@ static uint32_t away_from(const aisle_route *self, uint32_t from, uint32_t end, 
     return at;
 }
 
+// A tree from the free place before what is blocked to the one behind it.
+static void begin_tree(aisle_route *self) {
+    aisle_route_repair *repair = &self->repair;
+    const aisle_waypoint_msg *from = &waypoints(self)[repair->first], *to = &waypoints(self)[repair->last];
+    aisle_vehicle_space_begin(&self->sample.configurations, &self->space, AISLE_VEHICLE_SPACE_PLACE);
+    aisle_rrt_config cfg = aisle_route_tree_config(self);
+    cfg.more /= MORE_SHARE;
+    cfg.start[0] = from->x;
+    cfg.start[1] = from->y;
+    cfg.goal[0] = to->x;
+    cfg.goal[1] = to->y;
+    const aisle_status st = aisle_rrt_start(&self->sample.tree, &cfg);
+    AISLE_ASSERT(st == AISLE_OK);
+    repair->phase = AISLE_ROUTE_REPAIR_TREE;
+}
+
 static bool begin_search(aisle_route *self) {
+    if (is_by_tree(self)) {
+        begin_tree(self);
+        return true;
+    }
     aisle_route_repair *repair = &self->repair;
     const aisle_vehicle *vehicle = self->vehicle;
     const double keep = vehicle->margin + AISLE_SPACE_SLACK;
@@ -226,6 +256,23 @@ static aisle_status search(aisle_route *self, uint32_t units) {
     return push_pieces(self, repair->last, repair->leg_end) ? end_leg(self) : give_up(self);
 }
 
+static aisle_status grow(aisle_route *self, uint32_t units) {
+    const aisle_route_repair *repair = &self->repair;
+    aisle_route_sample *sample = &self->sample;
+    const aisle_status st = aisle_rrt_step(&sample->tree, units, &self->spent);
+    if (st == AISLE_BUSY) {
+        return AISLE_BUSY;
+    }
+    const uint32_t most = sample->tree.capacity + 1U;
+    const uint32_t count = st == AISLE_OK ? aisle_rrt_path(&sample->tree, sample->path, most) : 0U;
+    bool fits = count > 0U;
+    for (uint32_t i = 1; i < count && fits; i++) {
+        const double *q = aisle_rrt_at(&sample->tree, sample->path[i]);
+        fits = push(self, aisle_vec2_of(q[0], q[1]));
+    }
+    return fits && push_pieces(self, repair->last, repair->leg_end) ? end_leg(self) : give_up(self);
+}
+
 // ---- all together
 
 void aisle_route_begin_repair_leg(aisle_route *self) {
@@ -235,7 +282,8 @@ void aisle_route_begin_repair_leg(aisle_route *self) {
                                         .seed_value = -1.0,
                                         .swarm_value = -1.0,
                                         .mode = is_disc ? AISLE_SPACE_FREE_TURN : AISLE_SPACE_ALONG,
-                                        .bound = self->leg == 0U ? repair->bound : 0.0};
+                                        .bound = self->leg == 0U ? repair->bound : 0.0,
+                                        .is_sampled = is_by_tree(self)};
     aisle_space_begin(&self->space, self->layout, self->vehicle, self->legs[self->leg].mode);
     aisle_route_begin_zones(self);
     aisle_route_take_heading(self);
@@ -252,6 +300,9 @@ aisle_status aisle_route_step_repair(aisle_route *self, uint32_t units) {
     if (repair->phase == AISLE_ROUTE_REPAIR_SEARCH) {
         return search(self, units);
     }
+    if (repair->phase == AISLE_ROUTE_REPAIR_TREE) {
+        return grow(self, units);
+    }
     if (repair->at >= (uint32_t)self->decoded->num_waypoints ||
         AISLE_ROUTE_POINTS - self->point_count < AISLE_SEED_POINTS_MAX) {
         return give_up(self);
@@ -261,8 +312,10 @@ aisle_status aisle_route_step_repair(aisle_route *self, uint32_t units) {
 
 aisle_status aisle_route_end_repair(aisle_route *self, bool is_proved) {
     const bool is_short = self->request.options.objective == AISLE_OPTIONS_SHORTEST;
-    const double best = is_short ? self->repair.bound : self->repair.worth;
-    if (!is_proved || !(aisle_route_measure(self) <= best * (1.0 + AISLE_CACHE_REPAIR))) {
+    const bool is_tree = is_by_tree(self);
+    const double best = is_short && !is_tree ? self->repair.bound : self->repair.worth;
+    const double slack = is_tree ? AISLE_CACHE_REPAIR_TREE : AISLE_CACHE_REPAIR;
+    if (!is_proved || !(aisle_route_measure(self) <= best * (1.0 + slack))) {
         return give_up(self);
     }
     aisle_route_judge(self, false);

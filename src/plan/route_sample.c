@@ -49,7 +49,7 @@ static void find_ends(aisle_route *self) {
 
 // ---- TREE, MAP
 
-static aisle_rrt_config config_of(const aisle_route *self) {
+aisle_rrt_config aisle_route_tree_config(const aisle_route *self) {
     const aisle_options_msg *options = &self->request.options;
     const int8_t planner = aisle_route_is_sampling(self) ? options->planner : AISLE_OPTIONS_RRT_ADAPTIVE;
     const bool adaptive = planner == AISLE_OPTIONS_RRT_ADAPTIVE || planner == AISLE_OPTIONS_RRT_STAR_ADAPTIVE;
@@ -68,7 +68,7 @@ uint32_t aisle_route_share(const aisle_route *self) {
 
 static void begin_tree(aisle_route *self) {
     aisle_route_sample *sample = &self->sample;
-    aisle_rrt_config cfg = config_of(self);
+    aisle_rrt_config cfg = aisle_route_tree_config(self);
     memcpy(cfg.start, sample->start, sizeof cfg.start);
     memcpy(cfg.goal, sample->goal, sizeof cfg.goal);
     const aisle_status st = aisle_rrt_start(&sample->tree, &cfg);

@@ -195,6 +195,8 @@ aisle_status aisle_route_take_sampled_way(aisle_route *self);
 aisle_status aisle_route_no_sampled_way(aisle_route *self);
 // Is it one of those by name?
 bool aisle_route_is_sampling(const aisle_route *self);
+// The tree of the planner asked for over the configurations begun, but for its ends.
+aisle_rrt_config aisle_route_tree_config(const aisle_route *self);
 // Work units at which the leg under way ends its search: its even share of the half of the budget that searches have.
 uint32_t aisle_route_share(const aisle_route *self);
 

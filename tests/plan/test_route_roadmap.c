@@ -298,7 +298,24 @@ static void test_trees_by_name_are_remembered_too_and_kept_where_a_patch_does_no
         query.options.planner = planner;
         TEST_ASSERT_EQUAL_INT8(0, door_ask(&query)->cached);
         (void)door_judge(&door_reply);
+        TEST_ASSERT_EQUAL_INT8(planner, door_reply.planner);
+        TEST_ASSERT_TRUE(planner == AISLE_OPTIONS_PRM ||
+                         door_reply.length <= 14.0F * (1.0F + (float)AISLE_CACHE_REPAIR_TREE)); // it was straight
     }
+    TEST_ASSERT_EQUAL_INT64(4, count(AISLE_COUNTER_CACHE_REPAIRED)); // the trees'; PRM's roadmap is
+    TEST_ASSERT_EQUAL_INT64(1, count(AISLE_COUNTER_ROADMAP_REPAIRS));
+}
+
+static void test_a_trees_answer_that_cannot_be_joined_well_is_planned_anew(void) {
+    open_door(0, false);
+    aisle_query_msg query = question(3.0, 10.5, 17.0, 10.5);
+    query.options.planner = AISLE_OPTIONS_RRT_ADAPTIVE;
+    (void)door_judge(door_ask(&query));
+    send_box(1, (hall_box){9.5, 9.0, 10.5, 12.0}); // round the shelf, far more than a tenth longer
+    TEST_ASSERT_EQUAL_INT8(0, door_ask(&query)->cached);
+    (void)door_judge(&door_reply);
+    TEST_ASSERT_EQUAL_INT8(AISLE_OPTIONS_RRT_ADAPTIVE, door_reply.planner);
+    TEST_ASSERT_EQUAL_INT64(0, count(AISLE_COUNTER_CACHE_REPAIRED));
 }
 
 // Whether a list was planned to its end, given up half way or never begun is a matter of time alone.
@@ -353,6 +370,7 @@ int main(void) {
     RUN_TEST(test_a_patch_between_two_queries_repairs_the_roadmap);
     RUN_TEST(test_answers_are_remembered_and_one_roadmap_serves_all_questions);
     RUN_TEST(test_trees_by_name_are_remembered_too_and_kept_where_a_patch_does_not_touch_them);
+    RUN_TEST(test_a_trees_answer_that_cannot_be_joined_well_is_planned_anew);
     RUN_TEST(test_a_list_given_up_leaves_nothing_that_later_answers_show);
     return UNITY_END();
 }
