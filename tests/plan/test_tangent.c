@@ -151,7 +151,7 @@ static void test_random_polygons_give_the_oracles_length_or_its_proof(void) {
         compare_some(&rng, radii[seed % 4U], 8, &t);
     }
     printf("polygons: %d ways, %d proofs, %d in doubt\n", t.found, t.none, t.doubtful);
-    TEST_ASSERT_TRUE(t.found > 150 && t.none > 50 && t.doubtful < 5);
+    TEST_ASSERT_TRUE(t.found > LEAST(150) && t.none > LEAST(50) && t.doubtful < CASES(5));
 }
 
 static void test_random_scans_give_the_oracles_length_or_its_proof(void) {
@@ -164,7 +164,7 @@ static void test_random_scans_give_the_oracles_length_or_its_proof(void) {
         compare_some(&rng, 0.05 + 0.05 * (seed % 3U), 5, &t);
     }
     printf("scans: %d ways, %d proofs, %d in doubt\n", t.found, t.none, t.doubtful);
-    TEST_ASSERT_TRUE(t.found > 30 && t.none > 20 && t.doubtful < 5);
+    TEST_ASSERT_TRUE(t.found > LEAST(30) && t.none > LEAST(20) && t.doubtful < CASES(5));
 }
 
 static void test_polygons_on_a_scan_count_together(void) {
@@ -176,7 +176,7 @@ static void test_polygons_on_a_scan_count_together(void) {
         load();
         compare_some(&rng, 0.12, 6, &t);
     }
-    TEST_ASSERT_TRUE(t.found > 20 && t.doubtful < 3);
+    TEST_ASSERT_TRUE(t.found > LEAST(20) && t.doubtful < CASES(3));
 }
 
 // Boxes on a lattice: everything is aligned, touches or repeats.
@@ -202,7 +202,7 @@ static void test_aligned_touching_and_repeated_boxes_give_the_oracles_length(voi
         compare_some(&rng, 0.1 * (double)(1U + seed % 4U), 6, &t);
     }
     printf("boxes: %d ways, %d proofs, %d in doubt\n", t.found, t.none, t.doubtful);
-    TEST_ASSERT_TRUE(t.found > 60 && t.doubtful < 10);
+    TEST_ASSERT_TRUE(t.found > LEAST(60) && t.doubtful < CASES(10));
 }
 
 static void test_a_slit_a_hair_wider_than_the_disc_is_found_and_one_a_hair_narrower_is_a_proof(void) {
@@ -248,7 +248,7 @@ static void test_what_is_left_out_is_as_if_it_were_not_there(void) {
             optimum_free(world);
         }
     }
-    TEST_ASSERT_TRUE(other > 5);
+    TEST_ASSERT_TRUE(other > LEAST(5));
 }
 
 static void test_any_slicing_gives_the_same_way_and_bound(void) {
@@ -350,7 +350,7 @@ static void test_the_polyline_is_the_way_of_the_wider_disc_with_room_for_its_arc
             }
         }
     }
-    TEST_ASSERT_TRUE(told > 10);
+    TEST_ASSERT_TRUE(told > LEAST(10));
 }
 
 static void test_a_polyline_that_does_not_fit_is_not_told(void) {
