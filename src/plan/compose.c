@@ -112,9 +112,6 @@ static void lay_leg(aisle_compose *self, aisle_curve *curve, uint32_t i) {
     if (aisle_goal_wants_turn(goal, curve->w[curve->n - 1U].theta)) {
         aisle_curve_turn_to(curve, goal->theta);
     }
-    if (curve->n == 1U && i + 1U < self->request.leg_count) { // what is cut at a first waypoint has its goal behind
-        aisle_curve_stay(curve);
-    }
     aisle_curve_goal(curve, goal->id);
 }
 

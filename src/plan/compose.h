@@ -1,8 +1,7 @@
 // compose.h - from planned legs to a complete path_t: pieces, clearances, speeds, sums. Level 4.
 //
 // Geometry: seed legs become lines with the widest corner arc that is free, swarm legs the spline as biarcs (or lines
-// with arcs), manoeuvres are taken as they are; a turn on the spot where headings do not meet; a stop with GOAL at each
-// leg's end, which is the first waypoint of no path that goes on. Pieces are halved
+// with arcs), manoeuvres are taken as they are; a turn on the spot where headings do not meet; a stop with GOAL at each leg's end. Pieces are halved
 // down to AISLE_COMPOSE_PIECE (more on long paths, so that the waypoints suffice) so that clearance, creep speed and
 // zones follow the place; straight ones that keep the creep clearance only down to AISLE_COMPOSE_JOIN, and those that
 // keep it nowhere only to half of that, unless the objective is SAFEST: no other asks by how much. Straight neighbours

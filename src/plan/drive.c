@@ -123,15 +123,9 @@ uint32_t aisle_drive_next_goal(const aisle_waypoint_msg *w, uint32_t n) {
     return i;
 }
 
-// The waypoint of the first goal not passed; it may be the first one, of a path that begins where the vehicle dwells.
-static uint32_t goal_not_passed(const aisle_drive_path *path) {
-    const aisle_waypoint_msg *w = path->msg->waypoints;
-    return (w[0].flags & AISLE_WAYPOINT_GOAL) != 0 ? 0U : aisle_drive_next_goal(w, count_of(path));
-}
-
 static aisle_place next_goal(const aisle_drive_path *path) {
-    const uint32_t i = goal_not_passed(path);
-    return i > 0U ? (aisle_place){i, 1.0} : first_place(count_of(path));
+    const uint32_t i = aisle_drive_next_goal(path->msg->waypoints, count_of(path));
+    return (aisle_place){i, i > 0U ? 1.0 : 0.0};
 }
 
 // The place of `pose` on a path, no farther than the next goal.
@@ -169,9 +163,8 @@ void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const a
 // The next goal is told no more, and the vehicle is not before it.
 static void pass(aisle_drive_path *path) {
     const aisle_place goal = next_goal(path);
-    const uint32_t i = goal_not_passed(path);
-    path->msg->waypoints[i].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
-    path->dwell[i] = 0.0F;
+    path->msg->waypoints[goal.piece].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
+    path->dwell[goal.piece] = 0.0F;
     path->at = is_beyond(goal, path->at) ? goal : path->at;
 }
 

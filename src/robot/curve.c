@@ -187,17 +187,13 @@ void aisle_curve_pieces(aisle_curve *self, const aisle_waypoint_msg *w, uint32_t
     }
 }
 
-void aisle_curve_stay(aisle_curve *self) {
-    aisle_waypoint_msg *at = last(self);
-    at->flags |= AISLE_WAYPOINT_TURN_IN_PLACE;
-    append(self, position(at), at->theta, 0.0);
-}
-
 void aisle_curve_goal(aisle_curve *self, int32_t id) {
-    if ((last(self)->flags & AISLE_WAYPOINT_GOAL) != 0) { // a second goal at this place
-        aisle_curve_stay(self);
-    }
     aisle_waypoint_msg *at = last(self);
+    if ((at->flags & AISLE_WAYPOINT_GOAL) != 0) { // a second goal at this place: a turn by nothing
+        at->flags |= AISLE_WAYPOINT_TURN_IN_PLACE;
+        append(self, position(at), at->theta, 0.0);
+        at = last(self);
+    }
     at->flags |= AISLE_WAYPOINT_GOAL | AISLE_WAYPOINT_STOP;
     at->goal_id = id;
 }

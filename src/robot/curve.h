@@ -58,10 +58,8 @@ void aisle_curve_biarc_to(aisle_curve *self, aisle_vec2 p, aisle_vec2 tangent);
 // Appends ready pieces: w[0] is where they begin, the curve's present place; turns to its heading before.
 void aisle_curve_pieces(aisle_curve *self, const aisle_waypoint_msg *w, uint32_t n);
 
-// A turn on the spot by nothing: another waypoint at this place.
-void aisle_curve_stay(aisle_curve *self);
-
-// Marks the last waypoint as goal `id` and as a stop; if it is a goal already, it stays there first.
+// Marks the last waypoint as goal `id` and as a stop; if it is a goal already, a turn on the spot by nothing goes in
+// between.
 void aisle_curve_goal(aisle_curve *self, int32_t id);
 
 // Point of the piece from -> to at fraction f in [0, 1]: position on the line or arc, theta by fraction.

@@ -397,34 +397,6 @@ static void test_the_dwell_goes_on_while_the_hall_changes(void) {
     (void)drive_until(0);
 }
 
-static void test_who_stirs_on_a_goal_while_its_dwell_lasts_may_be_slowed_all_the_same(void) {
-    begin_list(1);
-    add(11, 1.0, 1.0)->dwell = 6.0F;
-    (void)add(12, 9.0, 1.0);
-    start_list();
-    drive(4.0);
-    hall_add(9.0, 6.0, 10.0, 7.0);
-    build_hall(2); // from now on what is out begins on the goal
-    drive(0.1);
-    door_now += 50000;
-    here.x += 0.005;
-    here.vx = 0.03F;
-    here.utime = door_now;
-    here.seq++;
-    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
-    aisle_obstacles_msg seen = {.utime = door_now, .seq = 1, .num_obstacles = 1};
-    seen.obstacles[0] =
-        (aisle_obstacle_msg){.id = 7, .kind = AISLE_OBSTACLE_PERSON, .x = 3.4, .y = 1.0, .radius = 0.3F};
-    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_OBSTACLES, &seen));
-    door_settle();
-    TEST_ASSERT_EQUAL(AISLE_STATUS_YIELDING, door_path.cause);
-    TEST_ASSERT_EQUAL_INT32(11, next_goal());
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, door_path.waypoints[0].x);
-    const int at = (door_path.waypoints[0].flags & AISLE_WAYPOINT_GOAL) != 0 ? 0 : 1;
-    TEST_ASSERT_EQUAL_INT32(11, door_path.waypoints[at].goal_id); // nor does the goal get lost
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, door_path.waypoints[at].x);
-}
-
 // ---- any order
 
 // Goals at the ends of the hall; from (1, 1) the best order is 11, 12, 13.
@@ -895,7 +867,6 @@ int main(void) {
     RUN_TEST(test_a_changed_goal_is_driven_to_again);
     RUN_TEST(test_what_was_reached_stays_so_when_the_hall_or_the_vehicle_changes);
     RUN_TEST(test_the_dwell_goes_on_while_the_hall_changes);
-    RUN_TEST(test_who_stirs_on_a_goal_while_its_dwell_lasts_may_be_slowed_all_the_same);
     RUN_TEST(test_what_is_left_in_any_order_is_ordered_anew_when_the_hall_changes);
     RUN_TEST(test_an_order_stays_when_there_is_no_reason_to_change_it);
     RUN_TEST(test_in_any_order_the_goal_being_driven_to_stays_the_first_of_a_longer_list);
