@@ -136,6 +136,22 @@ static aisle_place find(const aisle_drive_path *path, double ahead, aisle_pose2 
     return is_beyond(found, goal) ? goal : found;
 }
 
+// Has it gone on over the next goal of what is out, which is not counted as reached?
+static bool has_gone_on(const aisle_drive *self, double ahead, aisle_pose2 here) {
+    const aisle_drive_path *out = &self->out;
+    const aisle_waypoint_msg *w = out->msg->waypoints;
+    const aisle_place goal = next_goal(out);
+    if (self->passed >= self->num_goals ||
+        !is_beyond(aisle_motion_project(w, count_of(out), out->at, BACK, ahead, here, NULL), goal)) {
+        return false;
+    }
+    const aisle_pose2 there = aisle_motion_pose(w, count_of(out), goal);
+    const double told = (double)self->goals[self->passed].tolerance_xy;
+    const double room = (told > 0.0 ? told : AISLE_DRIVE_OFF) + AISLE_DRIVE_OFF;
+    return aisle_vec2_distance(aisle_vec2_of(here.x, here.y), aisle_vec2_of(there.x, there.y)) > room ||
+           fabs(aisle_angle_difference(here.theta, there.theta)) > AISLE_DRIVE_OFF_HEADING;
+}
+
 void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const aisle_pose_msg *pose) {
     const aisle_pose2 here = {pose->x, pose->y, pose->theta};
     const double since = aisle_clamp((double)(pose->utime - self->at_us) * 1e-6, 0.0, 1.0);
@@ -148,23 +164,28 @@ void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const a
     if (!self->has_plan) {
         return;
     }
+    bool has_left_goal = false;
     if (self->has_out) { // and the same on the plan, though what is out may begin ahead of the pose
         const aisle_drive_path *out = &self->out;
+        has_left_goal = has_gone_on(self, ahead, here);
         self->out.at = find(out, ahead, here, &self->off);
         const aisle_pose2 place = aisle_motion_pose(out->msg->waypoints, count_of(out), out->at);
         self->plan.at = find(&self->plan, ahead + AHEAD, place, NULL);
     } else {
         self->plan.at = find(&self->plan, ahead, here, &self->off);
     }
-    self->is_off = self->off.lateral > aisle_max(vehicle->margin, AISLE_DRIVE_OFF) ||
+    self->is_off = has_left_goal || self->off.lateral > aisle_max(vehicle->margin, AISLE_DRIVE_OFF) ||
                    fabs(self->off.heading) > AISLE_DRIVE_OFF_HEADING;
 }
 
 // The next goal is told no more, and the vehicle is not before it.
 static void pass(aisle_drive_path *path) {
-    const aisle_place goal = next_goal(path);
-    path->msg->waypoints[goal.piece].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
-    path->dwell[goal.piece] = 0.0F;
+    aisle_waypoint_msg *w = path->msg->waypoints;
+    const bool is_first = (w[0].flags & AISLE_WAYPOINT_GOAL) != 0; // it begins where the vehicle dwells
+    const aisle_place goal = is_first ? first_place(count_of(path)) : next_goal(path);
+    const uint32_t i = is_first ? 0U : goal.piece;
+    w[i].flags &= (int16_t)~AISLE_WAYPOINT_GOAL;
+    path->dwell[i] = 0.0F;
     path->at = is_beyond(goal, path->at) ? goal : path->at;
 }
 

@@ -19,7 +19,8 @@
 // Where the vehicle is: the pose, projected onto the path within a window about where it was, moved on by what the path
 // does in the pose's age. It is off the path if the nearest place there is farther than the margin (at least
 // AISLE_DRIVE_OFF) or its heading more than AISLE_DRIVE_OFF_HEADING away. It passes no goal that is not counted as
-// reached (mission.h), so that a path under way names it still.
+// reached (mission.h), so that a path under way names it still; one that has gone on over it all the same, farther than its
+// tolerance and AISLE_DRIVE_OFF, is off the path, too, for no proof sees it where it is.
 //
 // Memory: carved, four decoded paths, two encoded ones and pace.h's (0.5 MiB). Time: sliced; a cycle is at most
 // AISLE_PACE_LEVELS times pace and moving proof, and two static proofs.

@@ -397,6 +397,51 @@ static void test_the_dwell_goes_on_while_the_hall_changes(void) {
     (void)drive_until(0);
 }
 
+// A list whose first goal is where the vehicle stands: when that is reached the others are still told.
+static void test_goals_behind_one_at_the_start_are_kept_when_it_is_reached(void) {
+    begin_list(1);
+    add(11, 1.0, 1.0)->dwell = 1.0F;
+    (void)add(12, 4.0, 1.0);
+    (void)add(13, 9.0, 1.0);
+    start_list();
+    drive_until(12);
+    drive(0.5);
+    aisle_obstacles_msg seen = {.utime = door_now, .seq = 1, .num_obstacles = 1};
+    seen.obstacles[0] =
+        (aisle_obstacle_msg){.id = 7, .kind = AISLE_OBSTACLE_PERSON, .x = 5.6, .y = 1.0, .radius = 0.3F};
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_OBSTACLES, &seen));
+    door_settle(); // slower, by a new path
+    TEST_ASSERT_EQUAL(AISLE_STATUS_YIELDING, door_path.cause);
+    TEST_ASSERT_EQUAL(AISLE_PATH_OK, door_path.status);
+    int goals = 0;
+    for (int16_t i = 0; i < door_path.num_waypoints; i++) {
+        goals += (door_path.waypoints[i].flags & AISLE_WAYPOINT_GOAL) != 0;
+    }
+    TEST_ASSERT_EQUAL_INT(2, goals);
+}
+
+// Whatever its controller does: where no proof sees it, it is stopped.
+static void test_who_goes_on_over_a_goal_that_is_not_counted_is_stopped(void) {
+    begin_list(1);
+    (void)add(11, 4.0, 1.0);
+    (void)add(12, 9.0, 1.0);
+    start_list();
+    drive(4.0);
+    TEST_ASSERT_TRUE(here.x > 2.0 && here.x < 3.9 && next_goal() == 11);
+    for (int i = 0; i < 40 && door_path.status == AISLE_PATH_OK; i++) { // through, at 0.8 m/s
+        door_now += 50000;
+        here.x += 0.04;
+        here.vx = 0.8F;
+        here.utime = door_now;
+        here.seq++;
+        TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
+        door_settle();
+    }
+    TEST_ASSERT_EQUAL(AISLE_STATUS_OFF_PATH, door_path.cause);
+    TEST_ASSERT_EQUAL_INT32(11, next_goal());
+    TEST_ASSERT_TRUE(here.x > 4.09 && here.x < 4.2);
+}
+
 // ---- any order
 
 // Goals at the ends of the hall; from (1, 1) the best order is 11, 12, 13.
@@ -867,6 +912,8 @@ int main(void) {
     RUN_TEST(test_a_changed_goal_is_driven_to_again);
     RUN_TEST(test_what_was_reached_stays_so_when_the_hall_or_the_vehicle_changes);
     RUN_TEST(test_the_dwell_goes_on_while_the_hall_changes);
+    RUN_TEST(test_goals_behind_one_at_the_start_are_kept_when_it_is_reached);
+    RUN_TEST(test_who_goes_on_over_a_goal_that_is_not_counted_is_stopped);
     RUN_TEST(test_what_is_left_in_any_order_is_ordered_anew_when_the_hall_changes);
     RUN_TEST(test_an_order_stays_when_there_is_no_reason_to_change_it);
     RUN_TEST(test_in_any_order_the_goal_being_driven_to_stays_the_first_of_a_longer_list);
