@@ -104,6 +104,18 @@ aisle_roadmap_known aisle_roadmap_edge(const aisle_roadmap *self, uint32_t a, ui
 
 // ---- building
 
+// The last one takes what the others leave, or what there are too few blocks for.
+static void cut_blocks(aisle_roadmap *self) {
+    const uint32_t samples = self->config.samples;
+    uint32_t end = self->config.first > 0U ? self->config.first : samples;
+    self->block = self->blocks = 0;
+    while (end < samples && self->blocks + 1U < AISLE_ROADMAP_BLOCKS) {
+        self->end[self->blocks++] = end;
+        end *= 2U;
+    }
+    self->end[self->blocks++] = samples;
+}
+
 aisle_status aisle_roadmap_start(aisle_roadmap *self, const aisle_cspace *space, const aisle_roadmap_config *config) {
     if (config->samples < 1U || config->samples > self->capacity || space->dim > self->dim_max) {
         return AISLE_ERR_ARG;
@@ -118,9 +130,7 @@ aisle_status aisle_roadmap_start(aisle_roadmap *self, const aisle_cspace *space,
     self->edge_tests = self->retested = self->lists_renewed = 0;
     self->phase = AISLE_ROADMAP_DRAW;
     self->at = 0;
-    self->end[0] = config->samples;
-    self->blocks = 1;
-    self->block = 0;
+    cut_blocks(self);
     return AISLE_OK;
 }
 
@@ -158,8 +168,7 @@ static void look_at_draw(aisle_roadmap *self, uint32_t draw, uint32_t *spent) {
 static void draw_one(aisle_roadmap *self, uint32_t *spent) {
     const aisle_cspace *space = self->space;
     space->sample(space->context, &self->rng, config_at(self, self->at));
-    if (self->config.uniform > 0U && self->at >= self->config.uniform && self->at % 2U == 0U &&
-        space->retract != NULL) {
+    if (self->config.uniform > 0U && self->at >= self->config.uniform && space->retract != NULL) {
         space->retract(space->context, config_at(self, self->at));
     }
     self->degree[self->at] = 0;

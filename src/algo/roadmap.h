@@ -13,8 +13,8 @@
 //         done with. Each edge is tested once, and the way found is the same as with all tested before;
 //     blocks: where more is drawn, the new nodes are joined to their k nearest of all so far, and the old ones' lists stay,
 //         as in the paper where each node is joined to those before it: long motions of when nodes were few stay, by which
-//         a roadmap hangs together sooner. Every other draw of the later blocks may be moved off what it touches when it
-//         is drawn (config.uniform), so that slits get draws; it stays where it is when the space changes;
+//         a roadmap hangs together sooner. Later draws may be moved off what they touch (config.uniform), so that slits get
+//         draws; they stay where they are when the space changes, so then only uniform ones are those of one built anew;
 //     repair: a change of the space, told as which motions it may touch, tests only the draws and edges it touches
 //         again, and only lists of neighbours with a draw in them that came or left are made anew. Repaired and built
 //         anew have the same nodes, lists and free edges.
@@ -50,7 +50,8 @@ typedef enum aisle_roadmap_known { // of a motion
 typedef struct aisle_roadmap_config {
     uint32_t samples; // draws, [1, capacity]
     uint64_t seed;
-    uint32_t uniform; // draws, then every other one is moved off what it touches (cspace.h); 0: none is
+    uint32_t first;   // of them, that the first block holds, the next ones doubling them; 0: there is one block
+    uint32_t uniform; // of them; later ones are moved off what they touch when they are drawn (cspace.h); 0: all are
     bool eager;       // test every edge while building
     bool one_way;     // is_free() hangs on the direction
 } aisle_roadmap_config;

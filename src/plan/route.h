@@ -30,7 +30,7 @@
 // was proved away.
 // PRM: the same with a roadmap (roadmap.h), asked for each leg, by A*; its edges are tested when a search comes to them. It
 // begins with AISLE_ROUTE_ROADMAP_FIRST draws, or options.num_samples, and where it does not join a leg's ends doubles them, up
-// to what fits. A query's stays (roadmap_keep.h): the next one only asks, after a repair where patches have changed the layout. A
+// to what fits, the later ones moved off what they touch. A query's stays (roadmap_keep.h): the next one only asks, after a repair where patches have changed the layout. A
 // goal list works on a copy and leaves nothing. Objective PAPER: the paper's form, of AISLE_ROUTE_ROADMAP_PLAIN draws or
 // options.num_samples, all edges tested first, Dijkstra's search, and no more draws where it fails.
 // GA is the exact way for SHORTEST, else the objective's GRID way alone; each leg's seed is bred (barrier.h), pulled taut and
@@ -89,6 +89,7 @@
 #define AISLE_ROUTE_ROADMAP_DRAWS 3584U // of a roadmap, at most, counted by cells likewise
 #define AISLE_ROUTE_ROADMAP_FIRST 448U
 #define AISLE_ROUTE_ROADMAP_PLAIN 1000U
+#define AISLE_ROUTE_ROADMAP_BLOCK 28U  // draws of its first block
 #define AISLE_ROUTE_ROUND_UNITS 60000U // work units of a way round; who finds none by then waits
 #define AISLE_ROUTE_NONE UINT32_MAX
 #define AISLE_ROUTE_CREEP_SPARE 2e-3 // m, what is told of a clearance may be lower than the truth by less

@@ -22,6 +22,7 @@ static aisle_roadmap_wish wish_of(const aisle_route *self) {
                                 .configurations = configurations,
                                 .config = {.samples = draws < capacity ? draws : capacity,
                                            .seed = (uint64_t)(uint32_t)options->seed,
+                                           .first = is_plain(self) ? 0U : AISLE_ROUTE_ROADMAP_BLOCK,
                                            .uniform = is_plain(self) ? 0U : draws,
                                            .eager = is_plain(self),
                                            .one_way = configurations->kind == AISLE_VEHICLE_SPACE_POSE ||

@@ -266,6 +266,29 @@ static void test_what_is_grown_is_joined_to_all_so_far_and_old_lists_stay(void) 
     TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_roadmap_grow(&map, DRAWS + 1));
 }
 
+static void test_blocks_that_it_begins_with_are_as_if_it_had_grown(void) {
+    make_hall(2, 22);
+    aisle_roadmap_config config = eager;
+    config.samples = 50;
+    build(&map, 0, config);
+    while (map.count < DRAWS) {
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_roadmap_grow(&map, 2U * map.count < DRAWS ? 2U * map.count : DRAWS));
+        finish_in(&map, 1000);
+    }
+    config = eager;
+    config.first = 50;
+    build(&other, 1, config);
+    TEST_ASSERT_TRUE(is_same_map(&map, &other));
+    TEST_ASSERT_GREATER_THAN_UINT32(2, other.blocks);
+    config.first = 1; // more blocks than there may be: the last one takes the rest
+    config.samples = DRAWS;
+    build(&other, 1, config);
+    TEST_ASSERT_EQUAL_UINT32(DRAWS, other.end[other.blocks - 1U]);
+    config.first = DRAWS + 1;
+    build(&other, 1, config);
+    TEST_ASSERT_EQUAL_UINT32(1, other.blocks);
+}
+
 static void test_it_grows_no_more_often_than_it_has_blocks(void) {
     make_hall(2, 21);
     aisle_roadmap_config config = lazy;
@@ -283,7 +306,7 @@ static void to_the_left(void *context, double *q) {
     q[0] = space.lo[0];
 }
 
-static void test_every_other_draw_beyond_the_uniform_ones_is_retracted(void) {
+static void test_draws_beyond_the_uniform_ones_are_retracted(void) {
     make_hall(2, 23);
     build(&other, 1, lazy);
     space.retract = to_the_left;
@@ -294,7 +317,7 @@ static void test_every_other_draw_beyond_the_uniform_ones_is_retracted(void) {
     build(&map, 0, config);
     space.retract = NULL;
     for (uint32_t row = 0; row < DRAWS; row++) {
-        const bool is_moved = row >= 101U && row % 2U == 0U;
+        const bool is_moved = row >= 101U;
         TEST_ASSERT_TRUE(at(&map, row)[0] <= (is_moved ? space.lo[0] : at(&other, row)[0]));
         TEST_ASSERT_TRUE(at(&map, row)[0] >= (is_moved ? space.lo[0] : at(&other, row)[0]));
         TEST_ASSERT_EQUAL_MEMORY(at(&other, row) + 1, at(&map, row) + 1, sizeof(double));
@@ -557,8 +580,9 @@ int main(void) {
     RUN_TEST(test_a_lazy_repair_leaves_nothing_known_that_is_not_so);
     RUN_TEST(test_what_is_far_from_a_change_is_not_tested_again);
     RUN_TEST(test_what_is_grown_is_joined_to_all_so_far_and_old_lists_stay);
+    RUN_TEST(test_blocks_that_it_begins_with_are_as_if_it_had_grown);
     RUN_TEST(test_it_grows_no_more_often_than_it_has_blocks);
-    RUN_TEST(test_every_other_draw_beyond_the_uniform_ones_is_retracted);
+    RUN_TEST(test_draws_beyond_the_uniform_ones_are_retracted);
     RUN_TEST(test_a_copy_answers_alike_and_leaves_the_other_alone);
     RUN_TEST(test_any_slicing_gives_the_same_bits);
     RUN_TEST(test_bad_configs_are_refused_and_change_nothing);

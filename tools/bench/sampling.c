@@ -20,7 +20,7 @@
 #include <time.h>
 
 enum { BLOCK = 160 << 20, CELLS = 1 << 22, NODES = 32768, UNITS = 64, UNITS_FIRST = 64, MARKS = 4 };
-enum { FIRST_DRAWS = 8, LINKS = 10 };
+enum { FIRST_DRAWS = 8, UNIFORM = 448, LINKS = 10 }; // the latter two as by name
 
 static const double marks[MARKS] = {1.0, 5.0, 20.0, 100.0}; // ms
 static hall scene;
@@ -159,7 +159,7 @@ static double ask(const aisle_rrt_config *cfg, double best, uint32_t *best_count
 }
 
 static void grow_roadmap(const aisle_rrt_config *cfg) {
-    const aisle_roadmap_config draws = {.samples = FIRST_DRAWS, .uniform = FIRST_DRAWS, .seed = cfg->seed};
+    const aisle_roadmap_config draws = {.samples = FIRST_DRAWS, .uniform = UNIFORM, .seed = cfg->seed};
     outcome o = begin();
     uint32_t first_draws = 0, count = 0;
     (void)aisle_roadmap_start(&roadmap, cfg->space, &draws);

@@ -2,7 +2,7 @@
 """The sampling planners beside OMPL's of the same name: the first path, and lengths as time goes by, in one run.
 
 build/venv/bin/python tools/bench/sampling_table.py [folder] [--only NAME] [--seeds 30] [--cap 0.1] [--no-ompl]
-    [--namesakes] [--steps]
+    [--planner NAME] [--namesakes] [--steps]
 
 Disc robots (of others the disc in which they turn), margin none, every leg; the planners alone, no proof, the layout in
 force; nothing is simplified but what ours do by themselves. Both sides test every motion exactly and keep the same radius:
@@ -119,12 +119,13 @@ def compare(args: argparse.Namespace, path: Path, leg: int, ompl: Path | None) -
     pair = (*stops[leg][:2], *stops[leg + 1][:2])
     title = path.stem + (f" {leg + 1}" if len(stops) > 2 else "")
     rows: dict = {"scenario": title, "ours": {}, "ompl": {}}
-    peers_asked = sorted(set(NAMESAKE.values())) if args.namesakes else THEIRS
+    wanted = args.planner or list(OURS)
+    peers_asked = sorted({NAMESAKE[n] for n in wanted}) if args.namesakes else THEIRS
     for name in peers_asked if ompl is not None else ():
         runs = theirs(ompl, raw, scenario.world.bounds, name, pair, args.seeds, args.cap)
         check_paths(runs, raw, pair, f"{title}: OMPL {name}")
         rows["ompl"][name] = summary(runs, args.cap)
-    for name, planner in OURS.items():
+    for name, planner in ((n, OURS[n]) for n in wanted):
         runs = ours(args.program, text, planner, args.seeds, args.cap)
         check_paths(runs, raw, pair, f"{title}: {name}")
         row = rows["ours"][name] = summary(runs, args.cap)
@@ -139,7 +140,7 @@ def compare(args: argparse.Namespace, path: Path, leg: int, ompl: Path | None) -
 
 
 def verdict(rows: list[dict]) -> None:
-    for name, peer in NAMESAKE.items():
+    for name, peer in ((n, p) for n, p in NAMESAKE.items() if n in rows[0]["ours"]):
         factors = [r["ours"][name]["factor"] for r in rows if r["ompl"]]
         if not factors:
             return
@@ -196,6 +197,7 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=30)
     parser.add_argument("--cap", type=float, default=0.1, help="s for each run")
     parser.add_argument("--no-ompl", action="store_true")
+    parser.add_argument("--planner", choices=OURS, action="append", help="of ours only these")
     parser.add_argument("--namesakes", action="store_true", help="of OMPL's planners only those of the same names")
     parser.add_argument("--steps", action="store_true", help="the paper's plain form over the step")
     parser.add_argument("--program", type=Path, default=offline.ROOT / "build" / "release" / "bench-sampling")
