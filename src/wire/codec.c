@@ -22,9 +22,20 @@ typedef struct frame { // an array of structs being walked, or one struct
     uint32_t rows[AISLE_WIRE_SLOTS_MAX];
 } frame;
 
+#define FLAT_RUNS_MAX 6 // a waypoint has 4
+
+typedef struct flat {        // an array of structs that all have the same few runs: these are found once
+    run runs[FLAT_RUNS_MAX]; // as told last
+    uint32_t count, at;      // runs; the next one
+    uint32_t left;           // elements, the present one counted
+    uint32_t size;           // of an element in the C struct
+} flat;
+
 typedef struct walk {
     frame stack[AISLE_WIRE_DEPTH_MAX];
     uint32_t depth;
+    flat flat; // none is left: the walk is on the stack's top
+    run now;   // if it is
 } walk;
 
 static void enter(walk *self, uint32_t type, uint32_t base, uint32_t elements) {
@@ -91,8 +102,42 @@ static const char *name_at(const run *what, uint32_t at) {
     return field->name;
 }
 
-// Where a count lies ahead, the caller must have given its value to keep_count() before it asks for the next run.
-static bool next_run(walk *self, run *out) {
+// The runs of such an array. False: its struct holds counts, other structs or too many runs.
+static bool flatten(flat *self, uint32_t type, uint32_t base, uint32_t elements) {
+    frame element = {.type = &aisle_wire_types[type], .base = base};
+    self->size = element.type->struct_size;
+    self->left = 0;
+    self->at = 0;
+    for (self->count = 0; element.field < element.type->num_fields; self->count++) {
+        const aisle_wire_field *field = &element.type->fields[element.field++];
+        if (self->count == FLAT_RUNS_MAX || field->kind == AISLE_WIRE_STRUCT || !is_plain(field)) {
+            return false;
+        }
+        run *next = &self->runs[self->count];
+        *next = (run){field, base + field->offset, field->each, width_of(field->kind)};
+        lengthen(&element, next);
+        next->offset -= self->size; // it goes on by one element each time
+    }
+    self->left = self->count > 0 ? elements : 0;
+    return self->left > 0;
+}
+
+static const run *next_flat_run(flat *self) {
+    run *next = &self->runs[self->at];
+    next->offset += self->size;
+    if (++self->at == self->count) {
+        self->at = 0;
+        self->left--;
+    }
+    return next;
+}
+
+// NULL: no more. It stays as it is until the next call. Where a count lies ahead, the caller must have given its value to
+// keep_count() before it asks for the next run.
+static const run *next_run(walk *self) {
+    if (self->flat.left > 0) {
+        return next_flat_run(&self->flat);
+    }
     while (self->depth > 0) {
         frame *top = &self->stack[self->depth - 1];
         if (top->field == top->type->num_fields) {
@@ -105,13 +150,16 @@ static bool next_run(walk *self, run *out) {
             continue;
         }
         if (field->kind != AISLE_WIRE_STRUCT) {
-            *out = (run){field, top->base + field->offset, count, width_of(field->kind)};
-            lengthen(top, out);
-            return true;
+            self->now = (run){field, top->base + field->offset, count, width_of(field->kind)};
+            lengthen(top, &self->now);
+            return &self->now;
+        }
+        if (count > 1 && flatten(&self->flat, field->nested, top->base + field->offset, count)) {
+            return next_flat_run(&self->flat);
         }
         enter(self, field->nested, top->base + field->offset, count);
     }
-    return false;
+    return NULL;
 }
 
 static void keep_count(walk *self, const aisle_wire_field *field, uint32_t value) {
@@ -304,13 +352,13 @@ static bool blame_truncated(walk *at, const uint8_t *bytes, size_t left, const r
 
 static bool check_body(aisle_msg_type type, const uint8_t *bytes, size_t size, aisle_msg_fault *fault) {
     walk at = {.depth = 0};
-    run now;
+    const run *now;
     size_t done = 0;
-    for (enter(&at, type, 0, 1); next_run(&at, &now); done += (size_t)now.width * now.count) {
-        if (size - done < (size_t)now.width * now.count) {
-            return blame_truncated(&at, bytes + done, size - done, &now, fault);
+    for (enter(&at, type, 0, 1); (now = next_run(&at)) != NULL; done += (size_t)now->width * now->count) {
+        if (size - done < (size_t)now->width * now->count) {
+            return blame_truncated(&at, bytes + done, size - done, now, fault);
         }
-        if (!check_run(&at, bytes + done, &now, fault)) {
+        if (!check_run(&at, bytes + done, now, fault)) {
             return false;
         }
     }
@@ -333,12 +381,12 @@ static bool check_message(aisle_msg_type type, const uint8_t *bytes, size_t size
 // For a body that check_body() has passed.
 static void unpack_body(aisle_msg_type type, const uint8_t *bytes, uint8_t *msg) {
     walk at = {.depth = 0};
-    run now;
-    for (enter(&at, type, 0, 1); next_run(&at, &now); bytes += (size_t)now.width * now.count) {
-        AISLE_ASSERT(now.offset + (size_t)now.width * now.count <= aisle_wire_types[type].struct_size);
-        unpack(bytes, msg + now.offset, now.width, now.count);
-        if (now.field->slot != AISLE_WIRE_NO_SLOT) {
-            keep_count(&at, now.field, (uint32_t)count_at(bytes, now.width));
+    const run *now;
+    for (enter(&at, type, 0, 1); (now = next_run(&at)) != NULL; bytes += (size_t)now->width * now->count) {
+        AISLE_ASSERT(now->offset + (size_t)now->width * now->count <= aisle_wire_types[type].struct_size);
+        unpack(bytes, msg + now->offset, now->width, now->count);
+        if (now->field->slot != AISLE_WIRE_NO_SLOT) {
+            keep_count(&at, now->field, (uint32_t)count_at(bytes, now->width));
         }
     }
 }
@@ -386,16 +434,16 @@ aisle_status aisle_msg_encode_body(aisle_msg_type type, const void *msg, void *o
         return AISLE_ERR_ARG;
     }
     walk at = {.depth = 0};
-    run now;
+    const run *now;
     aisle_msg_fault fault;
     size_t done = 0;
-    for (enter(&at, type, 0, 1); next_run(&at, &now); done += (size_t)now.width * now.count) {
+    for (enter(&at, type, 0, 1); (now = next_run(&at)) != NULL; done += (size_t)now->width * now->count) {
         uint8_t *to = (uint8_t *)out + done;
-        if (capacity - done < (size_t)now.width * now.count) {
+        if (capacity - done < (size_t)now->width * now->count) {
             return AISLE_ERR_CAPACITY;
         }
-        pack((const uint8_t *)msg + now.offset, to, now.width, now.count);
-        if (!check_run(&at, to, &now, &fault)) {
+        pack((const uint8_t *)msg + now->offset, to, now->width, now->count);
+        if (!check_run(&at, to, now, &fault)) {
             return AISLE_ERR_DATA;
         }
     }
