@@ -41,11 +41,13 @@ void aisle_drive_carve(aisle_drive *self, aisle_arena *arena) {
     void *head = aisle_arena_take(arena, 1U, offsetof(aisle_path_msg, waypoints));
     aisle_pace_carve(self != NULL ? &self->pace : NULL, arena);
     void *decoded = aisle_arena_take(arena, 1U, sizeof(aisle_path_msg));
+    void *known = aisle_arena_take(arena, AISLE_PATH_MAX_WAYPOINTS, sizeof(aisle_verify_known));
     if (self != NULL) {
         self->out.bytes = (uint8_t *)out;
         self->next.bytes = (uint8_t *)next;
         self->head = (aisle_path_msg *)head;
         self->decoded = (aisle_path_msg *)decoded;
+        self->known = (aisle_verify_known *)known;
     }
 }
 
@@ -562,7 +564,8 @@ static void begin_static(aisle_drive *self) {
         .v_start = (double)next->msg->waypoints[0].v,
         .base = aisle_drive_moves(self) ? &self->base : NULL,
         .goals = self->goals + self->passed,
-        .num_goals = self->num_goals - self->passed};
+        .num_goals = self->num_goals - self->passed,
+        .known = self->known};
     aisle_verify_start(&self->verify, &request, self->decoded);
     self->stage = AISLE_DRIVE_STATIC;
 }

@@ -85,6 +85,7 @@ static aisle_planner *carve(aisle_arena *arena, const aisle_limits *limits) {
     if (self != NULL) {
         self->layout = layout;
         self->route = route;
+        self->route->known = self->drive.known;
         self->arm = arm;
         self->queue = (aisle_request *)queue;
     }

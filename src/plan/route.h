@@ -255,6 +255,7 @@ typedef struct aisle_route {
     bool local_is_there;        // nothing to search: the leg begins at its goal
     aisle_compose compose;
     aisle_verify verify;
+    aisle_verify_known *known; // of the path under way, for pieces of goal lists' plans; NULL: not kept
     aisle_one_way one_way;
     bool is_one_way_asked;  // for the leg under way
     uint32_t opposed_zones; // DIRECTED ones that a way of the leg is against which is none for that alone

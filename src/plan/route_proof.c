@@ -84,6 +84,8 @@ aisle_verify_request aisle_route_verify_request(const aisle_route *self, double 
 static void begin_verify(aisle_route *self) {
     seal(self);
     aisle_verify_request request = aisle_route_verify_request(self, self->path->waypoints[0].theta);
+    request.known = self->request.is_query ? NULL : self->known;
+    request.looks_anew = true; // what a request costs hangs on it alone
     aisle_verify_start(&self->verify, &request, self->decoded);
     self->stage = AISLE_ROUTE_VERIFY;
 }

@@ -78,6 +78,10 @@
 // Again. What was proved once and is shown with the basis of that proof is not looked at again if nothing of the basis
 // has changed, for the verdict would be the same: only the digests are made anew (one pass over the bytes), and ids,
 // revisions and certificate are checked. A basis that does not fit changes nothing.
+// Pieces known. A path that takes over from another one has most of its pieces. Each piece whose motion was proved can be
+// kept (aisle_verify_known): the digest of its curve, the vehicle and the ground, with the fastest speed it was proved for.
+// Where the same piece comes again as far from the path's end and no faster, on the same ground and for the same vehicle, its
+// motion is not looked at again; all other checks are made. The verdict is the same, the intervals and units are fewer.
 // Memory: the caller's struct, stack of intervals of fixed depth. Time: O(intervals * obstacles near), sliced.
 #ifndef AISLE_PLAN_VERIFY_H
 #define AISLE_PLAN_VERIFY_H
@@ -117,6 +121,12 @@ typedef struct aisle_verify_base {
     bool turn;    // what is left of the turn on the spot that the place is in belongs to it even if reach is 0
 } aisle_verify_base;
 
+// A piece whose motion was proved. Only verify.c writes one; zeroed: none.
+typedef struct aisle_verify_known {
+    uint64_t digest; // of the layout's and the vehicle's content, both ends, curvature and TURN_IN_PLACE
+    double peak;     // m/s, for which it was proved
+} aisle_verify_known;
+
 typedef struct aisle_verify_request {
     const aisle_layout *layout;
     const aisle_vehicle *vehicle;
@@ -128,6 +138,10 @@ typedef struct aisle_verify_request {
     const aisle_goal_msg *goals;   // [num_goals] to be reached in this order, flags GOAL with their ids
     uint32_t num_goals;
     const aisle_proof_basis *basis; // of an earlier proof of the same path; NULL: none
+    aisle_verify_known
+        *known;      // [AISLE_PATH_MAX_WAYPOINTS] by pieces from the end of the path, of the paths of status OK
+                     // proved with it; NULL: none
+    bool looks_anew; // known is written, but not read: units do not depend on what was proved before
 } aisle_verify_request;
 
 typedef enum aisle_verify_fault {
@@ -233,7 +247,11 @@ typedef struct aisle_verify {
     uint32_t at;             // waypoint or piece in hand
     uint32_t goals;          // reached before it
     uint64_t digest;         // of the bytes at the start
+    bool unbroken;           // and no step has ended since
     aisle_proof_basis basis; // of what is being proved
+    uint64_t ground;         // digest of layout and vehicle
+    aisle_verify_known now;  // the piece in hand,
+    bool is_known;           // which needs no look
     double lever;            // m, farthest footprint point from the origin
     double s;                // m, sum of lengths so far
     double along;            // rad, direction of motion at the end of the last piece

@@ -26,9 +26,10 @@ static aisle_status refuse_unfit(aisle_verify_moving *self) {
 }
 
 static aisle_status finish(aisle_verify_moving *self) {
-    uint64_t digest;
+    uint64_t digest = self->digest;
     const aisle_moving_request *request = &self->request;
-    if (!aisle_release_digest(request->bytes, request->size, &digest, NULL) || digest != self->digest) {
+    if (!self->unbroken &&
+        (!aisle_release_digest(request->bytes, request->size, &digest, NULL) || digest != self->digest)) {
         return refuse_unfit(self);
     }
     return end(self, AISLE_OK);
@@ -59,6 +60,7 @@ static bool is_path_of_the_bytes(const aisle_moving_request *request) {
 
 static aisle_status step_start(aisle_verify_moving *self) {
     const aisle_moving_request *request = &self->request;
+    self->unbroken = true;
     if (!aisle_release_digest(request->bytes, request->size, &self->digest, NULL) || !is_path_of_the_bytes(request)) {
         return refuse_unfit(self);
     }
@@ -427,6 +429,7 @@ aisle_status aisle_verify_moving_step(aisle_verify_moving *self, uint32_t units,
     const aisle_moving_request *request = &self->request;
     aisle_status status = AISLE_BUSY;
     *stamp = (aisle_moving_stamp){0, 0, 0, 0.0F};
+    self->unbroken = false;
     if (self->stage == AISLE_MOVING_DONE) {
         status = self->answer;
     } else if (self->movers_revision != request->movers->revision) {

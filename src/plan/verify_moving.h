@@ -132,7 +132,8 @@ typedef struct aisle_verify_moving {
     aisle_moving_stage stage;
     bool has_second_pass, is_second_pass; // the one that catches up
     aisle_status answer;
-    uint64_t digest;
+    uint64_t digest; // of the bytes at the start
+    bool unbroken;   // and no step has ended since: nobody can have changed them
     uint32_t movers_revision;
     double lever;  // m, farthest footprint point from the origin
     double window; // m of path that can be driven, then what is left of it

@@ -495,8 +495,124 @@ static void test_any_bit_turned_over_is_refused_whatever_the_basis(void) {
     }
 }
 
+// ---- pieces known
+
+static aisle_verify_known known[AISLE_PATH_MAX_WAYPOINTS];
+
+// Intervals looked at; the verdict is that of a proof that knows nothing.
+static uint32_t looks_with_known(void) {
+    aisle_verify_request request = request_of_three();
+    (void)verify_request(&request, UINT32_MAX);
+    const aisle_verify anew = verify;
+    const uint64_t digest = stamp.digest;
+    request.known = known;
+    (void)verify_request(&request, 7);
+    TEST_ASSERT_EQUAL(anew.fault, verify.fault);
+    TEST_ASSERT_EQUAL_UINT32(anew.fault_waypoint, verify.fault_waypoint);
+    TEST_ASSERT_EQUAL_INT32(anew.fault_id, verify.fault_id);
+    TEST_ASSERT_EQUAL_UINT64(digest, stamp.digest);
+    return verify.intervals;
+}
+
+static void knows_the_usual_path(void) {
+    memset(known, 0, sizeof known);
+    TEST_ASSERT_GREATER_THAN_UINT32(4, looks_with_known());
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+}
+
+static void test_pieces_known_are_not_looked_at_again(void) {
+    knows_the_usual_path();
+    path.goal_list_id++; // another message
+    path_seal();
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+}
+
+static void test_a_path_that_begins_later_knows_its_pieces(void) {
+    knows_the_usual_path();
+    memmove(&path.waypoints[0], &path.waypoints[1], 5 * sizeof path.waypoints[0]);
+    path.num_waypoints--;
+    path_retime(0.5 * vehicle.creep_speed);
+    path_seal();
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+}
+
+static void test_a_piece_of_another_curve_is_looked_at(void) {
+    knows_the_usual_path();
+    for (int i = 0; i < 6; i++) { // each waypoint in turn, by less than any check minds
+        usual_path();
+        path.waypoints[i].x += 1e-9;
+        path_seal();
+        TEST_ASSERT_GREATER_THAN_UINT32(0, looks_with_known());
+        TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verify.fault);
+        usual_path();
+        (void)looks_with_known();
+    }
+}
+
+static void test_other_ground_and_another_vehicle_know_nothing(void) {
+    knows_the_usual_path();
+    const double margin = vehicle.margin;
+    vehicle.margin = 1.0;
+    TEST_ASSERT_GREATER_THAN_UINT32(0, looks_with_known());
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_COLLISION, verify.fault);
+    vehicle.margin = margin;
+    (void)looks_with_known();
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+    world_begin(-20.0, -20.0, 20.0, 20.0, 0.5F);
+    (void)world_box(AISLE_POLYGON_OBSTACLE, 0.0, 0.3, 2.0, 2.0);
+    world_build();
+    TEST_ASSERT_GREATER_THAN_UINT32(0, looks_with_known());
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_COLLISION, verify.fault);
+}
+
+static void test_a_piece_is_known_no_faster_than_it_was_proved(void) {
+    vehicle.creep_clearance = 1.0; // slow beside the box
+    knows_the_usual_path();
+    path_drive(0.5 * vehicle.creep_speed);
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+    path_drive(2.0 * vehicle.creep_speed);
+    (void)looks_with_known();
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_CREEP, verify.fault);
+}
+
+static void test_who_looks_anew_learns_and_asks_nothing(void) {
+    memset(known, 0, sizeof known);
+    aisle_verify_request request = request_of_three();
+    request.known = known;
+    request.looks_anew = true;
+    TEST_ASSERT_EQUAL(AISLE_OK, verify_request(&request, UINT32_MAX));
+    const uint32_t all = verify.intervals, units = spent;
+    TEST_ASSERT_EQUAL(AISLE_OK, verify_request(&request, UINT32_MAX));
+    TEST_ASSERT_EQUAL_UINT32(all, verify.intervals);
+    TEST_ASSERT_EQUAL_UINT32(units, spent);
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+}
+
+static void test_a_path_that_ends_elsewhere_leaves_what_is_known(void) {
+    knows_the_usual_path();
+    const int16_t n = path.num_waypoints;
+    path.status = AISLE_PATH_PARTIAL;
+    path.num_waypoints = 3; // to the first goal
+    path.waypoints[2].flags |= AISLE_WAYPOINT_STOP;
+    path_retime(vehicle.creep_speed);
+    path_seal();
+    TEST_ASSERT_GREATER_THAN_UINT32(0, looks_with_known());
+    TEST_ASSERT_EQUAL(AISLE_VERIFY_NONE, verify.fault);
+    path.status = AISLE_PATH_OK;
+    path.num_waypoints = n;
+    usual_path();
+    TEST_ASSERT_EQUAL_UINT32(0, looks_with_known());
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_pieces_known_are_not_looked_at_again);
+    RUN_TEST(test_a_path_that_begins_later_knows_its_pieces);
+    RUN_TEST(test_a_piece_of_another_curve_is_looked_at);
+    RUN_TEST(test_other_ground_and_another_vehicle_know_nothing);
+    RUN_TEST(test_a_piece_is_known_no_faster_than_it_was_proved);
+    RUN_TEST(test_who_looks_anew_learns_and_asks_nothing);
+    RUN_TEST(test_a_path_that_ends_elsewhere_leaves_what_is_known);
     RUN_TEST(test_a_path_shown_with_the_basis_of_its_proof_is_proved_at_once);
     RUN_TEST(test_a_basis_of_anything_else_spares_nothing);
     RUN_TEST(test_a_changed_input_is_proved_anew);
