@@ -263,6 +263,44 @@ static aisle_verify_fault sums_fault(const aisle_verify *self) {
     return ok ? AISLE_VERIFY_NONE : AISLE_VERIFY_SUMS;
 }
 
+// ---- pieces known
+
+// Of the piece in hand; NULL: they are not kept. Of a path that ends elsewhere they would be other ones.
+static aisle_verify_known *known_place(const aisle_verify *self) {
+    aisle_verify_known *known = self->request.known;
+    return known != NULL && self->path->status == AISLE_PATH_OK ? &known[waypoints(self) - 1U - self->at] : NULL;
+}
+
+static aisle_verify_known known_of(const aisle_verify *self) {
+    const aisle_waypoint_msg *to = &self->path->waypoints[self->at], *from = self->at > 0 ? to - 1 : to;
+    const double words[] = {from->x, from->y,   from->theta,           to->x,
+                            to->y,   to->theta, (double)to->curvature, self->piece.on_spot ? 1.0 : 0.0};
+    return (aisle_verify_known){aisle_digest(self->ground, words, sizeof words), self->piece.peak};
+}
+
+// Marks the piece in hand if it is known.
+static void look_up(aisle_verify *self) {
+    const aisle_verify_known *known = known_place(self);
+    if (known == NULL || self->request.looks_anew) {
+        return;
+    }
+    const aisle_verify_known now = known_of(self);
+    if (known->digest == now.digest && now.peak <= known->peak) {
+        self->is_known[self->at / 8U] |= (uint8_t)(1U << (self->at % 8U));
+    }
+}
+
+static bool is_known(const aisle_verify *self) {
+    return (self->is_known[self->at / 8U] >> (self->at % 8U) & 1U) != 0U;
+}
+
+static void keep_known(const aisle_verify *self) {
+    aisle_verify_known *known = known_place(self);
+    if (known != NULL) {
+        *known = known_of(self);
+    }
+}
+
 // ---- steps
 
 static aisle_status step_header(aisle_verify *self) {
@@ -309,45 +347,16 @@ static void go_to_first_piece(aisle_verify *self) {
 }
 
 void aisle_verify_next_piece(aisle_verify *self) {
-    count_goal(self, self->at);
-    self->at++;
+    count_goal(self, self->at++);
     bool taken = take_piece(self, self->at);
     AISLE_ASSERT(taken); // looked at before
-}
-
-// ---- pieces known
-
-// Of the piece in hand; NULL: they are not kept. Of a path that ends elsewhere they would be other ones.
-static aisle_verify_known *known_place(const aisle_verify *self) {
-    aisle_verify_known *known = self->request.known;
-    return known != NULL && self->path->status == AISLE_PATH_OK ? &known[waypoints(self) - 1U - self->at] : NULL;
-}
-
-static aisle_verify_known known_of(const aisle_verify *self) {
-    const aisle_waypoint_msg *to = &self->path->waypoints[self->at], *from = self->at > 0 ? to - 1 : to;
-    const double words[] = {from->x, from->y,   from->theta,           to->x,
-                            to->y,   to->theta, (double)to->curvature, self->piece.on_spot ? 1.0 : 0.0};
-    return (aisle_verify_known){aisle_digest(self->ground, words, sizeof words), self->piece.peak};
-}
-
-static bool is_known(const aisle_verify *self) {
-    const aisle_verify_known *known = known_place(self);
-    return known != NULL && !self->request.looks_anew && known->digest == self->now.digest &&
-           self->now.peak <= known->peak;
-}
-
-static void keep_known(const aisle_verify *self) {
-    aisle_verify_known *known = known_place(self);
-    if (known != NULL) {
-        *known = self->now;
-    }
 }
 
 // ---- motion
 
 // The motion of the piece in hand; AISLE_OK: all of it is proved.
 static aisle_status step_piece(aisle_verify *self) {
-    if (self->is_known) {
+    if (is_known(self)) {
         return AISLE_OK;
     }
     const aisle_status status = aisle_verify_motion_step(self);
@@ -357,25 +366,28 @@ static aisle_status step_piece(aisle_verify *self) {
     return status;
 }
 
-static void begin_piece(aisle_verify *self) {
-    self->is_known = false;
-    if (self->request.known != NULL) {
-        self->now = known_of(self);
-        self->is_known = is_known(self);
+static void next_motion(aisle_verify *self) {
+    count_goal(self, self->at++);
+    if (!is_known(self)) {
+        const bool taken = take_piece(self, self->at);
+        AISLE_ASSERT(taken); // looked at before
+        aisle_verify_motion_begin(self);
     }
-    aisle_verify_motion_begin(self);
 }
 
 static void begin_motion(aisle_verify *self) {
     self->phase = AISLE_VERIFY_PHASE_MOTION;
     go_to_first_piece(self);
-    begin_piece(self);
+    aisle_verify_motion_begin(self);
 }
 
 static aisle_status step_waypoint(aisle_verify *self) {
     aisle_verify_fault fault = waypoint_fault(self, self->at);
     if (fault != AISLE_VERIFY_NONE) {
         return fail(self, fault, self->at);
+    }
+    if (self->at > 0 || waypoints(self) == 1) {
+        look_up(self);
     }
     count_goal(self, self->at);
     if (++self->at < waypoints(self)) {
@@ -420,8 +432,7 @@ static aisle_status step_motion(aisle_verify *self) {
     if (self->at + 1U >= waypoints(self)) {
         return finish(self);
     }
-    aisle_verify_next_piece(self);
-    begin_piece(self);
+    next_motion(self);
     return AISLE_BUSY;
 }
 

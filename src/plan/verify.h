@@ -244,17 +244,16 @@ typedef struct aisle_verify {
 
     // The verifier's own.
     aisle_verify_phase phase;
-    uint32_t at;             // waypoint or piece in hand
-    uint32_t goals;          // reached before it
-    uint64_t digest;         // of the bytes at the start
-    bool unbroken;           // and no step has ended since
-    aisle_proof_basis basis; // of what is being proved
-    uint64_t ground;         // digest of layout and vehicle
-    aisle_verify_known now;  // the piece in hand,
-    bool is_known;           // which needs no look
-    double lever;            // m, farthest footprint point from the origin
-    double s;                // m, sum of lengths so far
-    double along;            // rad, direction of motion at the end of the last piece
+    uint32_t at;                                    // waypoint or piece in hand
+    uint32_t goals;                                 // reached before it
+    uint64_t digest;                                // of the bytes at the start
+    bool unbroken;                                  // and no step has ended since
+    aisle_proof_basis basis;                        // of what is being proved
+    uint64_t ground;                                // digest of layout and vehicle
+    uint8_t is_known[AISLE_PATH_MAX_WAYPOINTS / 8]; // bits: pieces that need no look
+    double lever;                                   // m, farthest footprint point from the origin
+    double s;                                       // m, sum of lengths so far
+    double along;                                   // rad, direction of motion at the end of the last piece
     aisle_verify_piece piece;
     aisle_verify_walk walk;
     aisle_verify_motion motion;

@@ -42,6 +42,10 @@ aisle_verify_piece aisle_verify_piece_standing(const aisle_waypoint_msg *w) {
 
 // Half the angle of the minor arc: sin(phi) = |k| chord / 2.
 static bool set_arc(double k, aisle_verify_piece *out) {
+    if (!(fabs(k) > 0.0)) {
+        out->length = out->chord;
+        return true;
+    }
     double sine = fabs(k) * out->chord * 0.5;
     if (!(sine <= 1.0 + 1e-6)) {
         return false;
