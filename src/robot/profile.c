@@ -354,14 +354,19 @@ static bool find_ramp(const aisle_vehicle *vehicle, const aisle_profile_start *s
     if (!(v0 + v1 > 0.0) || !is_bounded_evenly(start, i)) { // a turn, or from rest to rest: a trapezoid as it is
         return false;
     }
+    const double limit = (double)w[i].a, ends = v0 + v1;
+    if (length * (2.0 * limit - ends) <=
+        AISLE_PROFILE_RAMP_GAIN * ends * limit) { // not even if it were at its limit at once
+        return false;
+    }
     const double highest = sqrt((2.0 * length * up * down + v0 * v0 * down + v1 * v1 * up) / (up + down));
-    const double peak = aisle_min(highest, (double)w[i].a);
+    const double peak = aisle_min(highest, limit);
     if (peak < aisle_max(v0, v1)) {
         return false;
     }
     *out = (ramp){(peak * peak - v0 * v0) / (2.0 * up), (peak * peak - v1 * v1) / (2.0 * down), length};
     const double cruise = aisle_max(length - out->up - out->down, 0.0) / peak;
-    return 2.0 * length / (v0 + v1) - ((peak - v0) / up + (peak - v1) / down + cruise) > AISLE_PROFILE_RAMP_GAIN;
+    return 2.0 * length / ends - ((peak - v0) / up + (peak - v1) / down + cruise) > AISLE_PROFILE_RAMP_GAIN;
 }
 
 // Where to cut it, m from its start: at[2], rising.
@@ -418,10 +423,12 @@ static void spread(const aisle_profile_path *path, uint32_t i, uint32_t to, cons
     }
 }
 
-static void put_ramps(const aisle_vehicle *vehicle, const aisle_profile_start *start, aisle_profile_path *path) {
+// False: none.
+static bool put_ramps(const aisle_vehicle *vehicle, const aisle_profile_start *start, aisle_profile_path *path) {
     uint32_t last;
     uint32_t shift = count_knots(vehicle, start, path, &last);
     const uint32_t n = path->n + shift;
+    const bool any = shift > 0;
     for (uint32_t i = path->n; i-- > 1 && shift > 0;) { // no shift is left at the first `whole`
         ramp cut = {0};
         double at[2] = {0.0, 0.0};
@@ -431,6 +438,7 @@ static void put_ramps(const aisle_vehicle *vehicle, const aisle_profile_start *s
         shift -= knots;
     }
     path->n = n;
+    return any;
 }
 
 // ---- the whole
@@ -486,7 +494,8 @@ aisle_status aisle_profile_fill_ramps(const aisle_vehicle *vehicle, const aisle_
         return AISLE_ERR_ARG;
     }
     const float limit = bound_speeds(vehicle, layout, start, path->w, path->n);
-    put_ramps(vehicle, start, path);
-    bound_accelerations(vehicle, path->w, path->n);
+    if (put_ramps(vehicle, start, path)) {
+        bound_accelerations(vehicle, path->w, path->n);
+    }
     return finish(vehicle, path->w, path->n, path->dwell, limit, sum);
 }
