@@ -418,6 +418,13 @@ static void take_base(aisle_drive *self) {
                                      .turn = in_turn && out->at.u > 0.0 && out->at.u < 1.0};
 }
 
+// From which level on speeds are no better than what is out, if that is fit to go on and better ones are looked for; 0: none.
+static uint32_t enough(const aisle_drive *self, uint32_t level) {
+    const bool goes_on =
+        self->has_out && !self->must_change && !aisle_drive_is_stopping(self) && aisle_drive_moves(self);
+    return goes_on && level < self->out.level ? self->out.level : 0U;
+}
+
 // Looks for speeds from `level` on.
 static void begin_pace(aisle_drive *self, uint32_t level) {
     const aisle_drive_path *plan = &self->plan;
@@ -439,8 +446,8 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
                                         .late = lateness(self),
                                         .lease = moves ? AISLE_DRIVE_PACE_LEASE : START_LEASE,
                                         .first = level,
-                                        .current = present_level(self)};
-    self->level = level;
+                                        .current = present_level(self),
+                                        .enough = enough(self, level)};
     memcpy(self->next.msg, self->head, offsetof(aisle_path_msg, waypoints));
     aisle_pace_start(&self->pace, &request, self->next.msg);
     self->stage = AISLE_DRIVE_PACE;
@@ -581,12 +588,6 @@ static aisle_status give_up(aisle_drive *self, aisle_drive_verdict *verdict) {
     return AISLE_BUSY;
 }
 
-// Is what pace found worth a change, what is out being fit to go on?
-static bool is_no_better(const aisle_drive *self) {
-    return self->has_out && !self->must_change && !aisle_drive_is_stopping(self) && aisle_drive_moves(self) &&
-           self->level < self->out.level && self->next.level >= self->out.level;
-}
-
 static aisle_status step_pace(aisle_drive *self, uint32_t units, aisle_drive_verdict *verdict) {
     const aisle_status st = aisle_pace_step(&self->pace, units, &self->spent);
     if (st == AISLE_BUSY) {
@@ -602,7 +603,7 @@ static aisle_status step_pace(aisle_drive *self, uint32_t units, aisle_drive_ver
     } else if (self->next.level == 0U) {
         self->why = (aisle_refusal){0, 0, 0.0F};
     }
-    if (is_no_better(self)) {
+    if (self->pace.request.enough > 0U && self->next.level >= self->pace.request.enough) {
         return end(self, AISLE_DRIVE_KEEP, verdict);
     }
     if (st == AISLE_PARTIAL && !aisle_drive_moves(self)) { // it would stay where it is

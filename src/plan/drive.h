@@ -98,7 +98,6 @@ typedef struct aisle_drive {
     bool brakes;          // what is tried is the last resort: braking, whatever moves
     int64_t cycle_us, changed_us;
     double lease;              // s, under proof
-    uint32_t level;            // the fastest to be tried
     aisle_path_msg *decoded;   // the static proof's,
     aisle_verify_known *known; // and the pieces it need not look at again
     aisle_verify verify;

@@ -358,6 +358,10 @@ static void blame(aisle_pace *self, const aisle_mover *mover, uint32_t where) {
 static void step_mover(aisle_pace *self, uint32_t *spent) {
     const aisle_pace_request *request = &self->request;
     if (self->mover == request->movers->count) {
+        if (request->enough > 0U && self->level >= request->enough) {
+            end(self, AISLE_OK);
+            return;
+        }
         knots path = whole_path(self);
         const double cap = aisle_pace_cap(request->vehicle, self->level);
         *spent += self->n / 8U;

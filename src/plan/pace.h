@@ -61,6 +61,7 @@ typedef struct aisle_pace_request {
                   // does not rest where it is
     uint32_t first;   // fastest level to be tried; AISLE_PACE_STOP: stop
     uint32_t current; // level of what is under way; AISLE_PACE_STOP if it rests or nothing is
+    uint32_t enough;  // a level from here on is not wanted: it is found, but no path is made of it; 0: all are wanted
 } aisle_pace_request;
 
 typedef struct aisle_pace_limit { // what does not let the vehicle be faster
@@ -101,8 +102,8 @@ void aisle_pace_start(aisle_pace *self, const aisle_pace_request *request, aisle
 
 // Spends about `units` (at most 1 + AISLE_BAND_MAX, or a level's waypoints, more); adds to *spent. AISLE_BUSY, then, for ever:
 // AISLE_OK      path->waypoints from `at` on, num_waypoints, num_base, length, duration, energy, risk (by pieces' clearances) and
-//               clearance_min are written, for self->level; the rest of *path is the caller's. limit: of the next faster
-//               level that was tried, if one was
+//               clearance_min are written, for self->level, if that is wanted; the rest of *path is the caller's. limit: of
+//               the next faster level that was tried, if one was
 // AISLE_PARTIAL likewise for AISLE_PACE_STOP: the path ends where the vehicle comes to rest. It has not been looked at
 //               whether that is safe: it is the least there is
 // AISLE_ERR_CAPACITY  the path has no room for the waypoints where speeds change

@@ -122,7 +122,7 @@ static bool flatten(flat *self, uint32_t type, uint32_t base, uint32_t elements)
     return self->left > 0;
 }
 
-static const run *next_flat_run(flat *self) {
+static inline const run *next_flat_run(flat *self) {
     run *next = &self->runs[self->at];
     next->offset += self->size;
     if (++self->at == self->count) {
@@ -132,12 +132,7 @@ static const run *next_flat_run(flat *self) {
     return next;
 }
 
-// NULL: no more. It stays as it is until the next call. Where a count lies ahead, the caller must have given its value to
-// keep_count() before it asks for the next run.
-static const run *next_run(walk *self) {
-    if (self->flat.left > 0) {
-        return next_flat_run(&self->flat);
-    }
+static const run *next_stacked_run(walk *self) {
     while (self->depth > 0) {
         frame *top = &self->stack[self->depth - 1];
         if (top->field == top->type->num_fields) {
@@ -160,6 +155,12 @@ static const run *next_run(walk *self) {
         enter(self, field->nested, top->base + field->offset, count);
     }
     return NULL;
+}
+
+// NULL: no more. It stays as it is until the next call. Where a count lies ahead, the caller must have given its value to
+// keep_count() before it asks for the next run.
+static inline const run *next_run(walk *self) {
+    return self->flat.left > 0 ? next_flat_run(&self->flat) : next_stacked_run(self);
 }
 
 static void keep_count(walk *self, const aisle_wire_field *field, uint32_t value) {
@@ -315,7 +316,7 @@ static bool check_count(walk *at, const uint8_t *bytes, const run *what, aisle_m
     return true;
 }
 
-static bool check_run(walk *at, const uint8_t *bytes, const run *what, aisle_msg_fault *fault) {
+static inline bool check_run(walk *at, const uint8_t *bytes, const run *what, aisle_msg_fault *fault) {
     uint32_t finite = what->count;
     if (what->field->kind == AISLE_WIRE_FLOAT) {
         finite = first_not_finite32(bytes, what->count);
