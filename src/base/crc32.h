@@ -1,6 +1,6 @@
 // crc32.h - CRC-32 as in zlib and Ethernet (polynomial 0xEDB88320, reflected). Level 0.
 //
-// Memory: 4 KiB of constant tables. Time: O(size), four bytes a round; bytes of any alignment.
+// Memory: 8 KiB of constant tables. Time: O(size), eight bytes a round; bytes of any alignment.
 #ifndef AISLE_BASE_CRC32_H
 #define AISLE_BASE_CRC32_H
 
