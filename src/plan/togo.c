@@ -155,18 +155,40 @@ static uint32_t price(const aisle_togo *self, uint32_t ix, uint32_t iy, uint32_t
     return self->dear == 1U || holds(self, ix, iy, self->clear_from) ? step : step * self->dear;
 }
 
+static void enter(aisle_togo *self, uint32_t ix, uint32_t iy, uint32_t step) {
+    const uint32_t cell = iy * self->w + ix;
+    if (self->cost[cell] != AISLE_TOGO_NONE || is_open(self, ix, iy)) { // one that was reached is open
+        reach(self, cell, self->at + price(self, ix, iy, step));
+    } else {
+        self->cost[cell] = 0; // closed: not looked at again
+    }
+}
+
+// Which neighbours could be nearer by this cell, a bit each: most are near enough already.
+static uint32_t nearer_by(const aisle_togo *self, uint32_t cell, uint32_t ix, uint32_t iy) {
+    const uint32_t w = self->w, side = self->at + STRAIGHT, across = self->at + DIAGONAL;
+    uint32_t bits = 0;
+    if (ix > 0U && iy > 0U && ix + 1U < w && iy + 1U < self->h) {
+        const uint16_t *row = self->cost + cell, *above = row + w, *below = row - w;
+        return (uint32_t)(side < row[1]) | (uint32_t)(side < above[0]) << 1 | (uint32_t)(side < row[-1]) << 2 |
+               (uint32_t)(side < below[0]) << 3 | (uint32_t)(across < above[1]) << 4 |
+               (uint32_t)(across < above[-1]) << 5 | (uint32_t)(across < below[-1]) << 6 |
+               (uint32_t)(across < below[1]) << 7;
+    }
+    for (uint32_t k = 0; k < 8U; k++) {
+        const uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
+        const bool is_there = nx < w && ny < self->h;
+        bits |= (uint32_t)(is_there && (k < 4U ? side : across) < self->cost[ny * w + nx]) << k;
+    }
+    return bits;
+}
+
 static void expand(aisle_togo *self, uint32_t cell) {
-    uint32_t ix = cell % self->w, iy = cell / self->w;
-    for (int k = 0; k < 8; k++) {
-        uint32_t nx = ix + (uint32_t)DX[k], ny = iy + (uint32_t)DY[k]; // below 0 wraps to beyond w
-        uint32_t step = k < 4 ? STRAIGHT : DIAGONAL;
-        if (nx >= self->w || ny >= self->h || self->at + step >= self->cost[ny * self->w + nx]) {
-            continue;
-        }
-        if (is_open(self, nx, ny)) {
-            reach(self, ny * self->w + nx, self->at + price(self, nx, ny, step));
-        } else {
-            self->cost[ny * self->w + nx] = 0; // closed: not looked at again
+    const uint32_t ix = cell % self->w, iy = cell / self->w;
+    uint32_t bits = nearer_by(self, cell, ix, iy);
+    for (uint32_t k = 0; bits != 0U; k++, bits >>= 1) {
+        if ((bits & 1U) != 0U) {
+            enter(self, ix + (uint32_t)DX[k], iy + (uint32_t)DY[k], k < 4U ? STRAIGHT : DIAGONAL);
         }
     }
 }
