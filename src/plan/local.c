@@ -66,35 +66,42 @@ static void close_place(aisle_local *self, aisle_vec2 a, aisle_vec2 b, double ra
     aisle_togo_close(&self->togo, a, b, aisle_min(radius, aisle_segment_gap(a, b, from, from)));
 }
 
-static void begin_round(aisle_local *self) {
-    const aisle_local_request *r = &self->request;
-    const aisle_space *space = r->space;
+static void close_mover(aisle_local *self, const aisle_local_mover *m) {
+    const aisle_space *space = self->request.space;
     const bool along = space->mode == AISLE_SPACE_ALONG;
-    self->points[0] = r->from;
+    const double body = along ? space->vehicle->inner_radius : space->vehicle->outer_radius;
+    const double lasts = m->until < (double)INFINITY ? m->until : 0.0;
+    close_place(self, m->at, aisle_vec2_add(m->at, aisle_vec2_scale(m->velocity, lasts)), m->keep + body);
+}
+
+// With the cost-to-go as far as it is known.
+static void begin_round(aisle_local *self) {
+    self->points[0] = self->request.from;
     self->count = 1;
     self->here_s = 0.0;
-    self->phase = POSITION;
-    if (r->beeline) {
-        self->level = togo_at(self, r->from);
-        return;
+    self->phase = self->request.beeline ? POSITION : TOGO;
+    if (self->request.beeline) {
+        self->level = togo_at(self, self->request.from);
     }
-    aisle_togo_start(&self->togo, space->grid, space->reach, r->from, r->goal);
-    aisle_togo_end_at_start(&self->togo); // each position is nearer to the goal than the one before
-    if (self->sure) {
-        aisle_togo_insist(&self->togo, space->reach);
-    }
-    for (uint32_t i = 0; i < self->movers; i++) {
-        const aisle_local_mover *m = &self->mover[i];
-        const double body = along ? space->vehicle->inner_radius : space->vehicle->outer_radius;
-        if (m->closed) {
-            const double lasts = m->until < (double)INFINITY ? m->until : 0.0;
-            close_place(self, m->at, aisle_vec2_add(m->at, aisle_vec2_scale(m->velocity, lasts)), m->keep + body);
+}
+
+// With nothing known.
+static void begin_anew(aisle_local *self) {
+    const aisle_local_request *r = &self->request;
+    self->bars = 0;
+    if (!r->beeline) {
+        aisle_togo_start(&self->togo, r->space->grid, r->space->reach, r->from, r->goal);
+        aisle_togo_end_at_start(&self->togo); // each position is nearer to the goal than the one before
+        if (self->sure) {
+            aisle_togo_insist(&self->togo, r->space->reach);
+        }
+        for (uint32_t i = 0; i < self->movers; i++) {
+            if (self->mover[i].closed) {
+                close_mover(self, &self->mover[i]);
+            }
         }
     }
-    for (uint32_t i = 0; i < self->bars; i++) {
-        close_place(self, self->bar[i].at, self->bar[i].at, self->bar[i].radius);
-    }
-    self->phase = TOGO;
+    begin_round(self);
 }
 
 aisle_status aisle_local_start(aisle_local *self, const aisle_local_request *request) {
@@ -105,7 +112,7 @@ aisle_status aisle_local_start(aisle_local *self, const aisle_local_request *req
     const float range = (float)(request->range > 0.0 ? request->range : AISLE_LOCAL_RANGE);
     self->lo[0] = self->lo[1] = -range;
     self->hi[0] = self->hi[1] = range;
-    self->round = self->bars = self->lines = self->relocations = self->units = 0;
+    self->round = self->lines = self->relocations = self->units = 0;
     self->blocker = 0;
     self->sure = true;
     self->fresh = self->rejoin = 0;
@@ -113,7 +120,7 @@ aisle_status aisle_local_start(aisle_local *self, const aisle_local_request *req
     aisle_local_take_movers(self);
     self->turns_at_from = request->space->mode == AISLE_SPACE_FREE_TURN ||
                           aisle_space_turn_free(request->space, request->from, &self->units);
-    begin_round(self);
+    begin_anew(self);
     return AISLE_OK;
 }
 
@@ -263,6 +270,7 @@ static void bar_place(aisle_local *self, aisle_vec2 p) {
         radius += aisle_vec2_distance(self->bar[i].at, p) < BAR_NEAR ? 0.5 * self->togo.size : 0.0;
     }
     self->bar[self->bars++] = (aisle_local_bar){p, radius};
+    close_place(self, p, p, radius);
 }
 
 // What hinders the line to the nearest place down the cost-to-go that is not in sight is closed. False: nothing does.
@@ -277,6 +285,7 @@ static bool close_hindrance(aisle_local *self) {
         }
         if (k != AISLE_LOCAL_NOBODY && !self->mover[k].closed) {
             self->mover[k].closed = true;
+            close_mover(self, &self->mover[k]);
             return true;
         }
         if (k != AISLE_LOCAL_NOBODY || !aisle_local_line_free(self, here, down[i], self->here_s, true)) {
@@ -289,8 +298,7 @@ static bool close_hindrance(aisle_local *self) {
 
 static void stop_being_sure(aisle_local *self) {
     self->sure = false;
-    self->bars = 0;
-    begin_round(self);
+    begin_anew(self);
 }
 
 static void give_up_round(aisle_local *self) {

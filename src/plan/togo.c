@@ -66,6 +66,7 @@ void aisle_togo_start(aisle_togo *self, const aisle_grid *grid, double reach_of,
     memset(self->count, 0, sizeof self->count);
     self->at = self->cells = 0;
     self->limit = COST_MAX;
+    self->since = AISLE_TOGO_NONE;
     self->start = cell_of(self, start);
     self->goal = cell_of(self, goal);
     reach(self, self->goal, 0);
@@ -90,19 +91,25 @@ void aisle_togo_insist(aisle_togo *self, double reach_of) {
     self->insists = true;
 }
 
+// Closed ones are not.
+static bool may_be_entered(const aisle_togo *self, uint32_t cell) {
+    return self->cost[cell] != 0U || cell == self->goal;
+}
+
 static aisle_vec2 centre_of(const aisle_togo *self, uint32_t ix, uint32_t iy) {
     const aisle_lattice *lattice = &self->grid->lattice;
     return aisle_vec2_of(lattice->x0 + ((double)ix + 0.5) * self->size, lattice->y0 + ((double)iy + 0.5) * self->size);
 }
 
 static void close_cell(aisle_togo *self, uint32_t cell) {
-    if (cell == self->start) {
+    if (cell == self->start || !may_be_entered(self, cell)) {
         return;
     }
     if (cell == self->goal) {
         memset(self->count, 0, sizeof self->count);
         self->goal = UINT32_MAX;
     }
+    self->since = self->cost[cell] < self->since ? self->cost[cell] : self->since;
     self->cost[cell] = 0; // nothing is nearer: never entered
 }
 
@@ -194,8 +201,7 @@ static void expand(aisle_togo *self, uint32_t cell) {
 }
 
 static bool is_reached(const aisle_togo *self, uint32_t cell) {
-    const bool closed = self->cost[cell] == 0U && cell != self->goal;
-    return self->cost[cell] != AISLE_TOGO_NONE && !closed;
+    return self->cost[cell] != AISLE_TOGO_NONE && may_be_entered(self, cell);
 }
 
 // The next bucket that holds something; false: none does, or the limit is reached.
@@ -208,8 +214,30 @@ static bool next_bucket(aisle_togo *self) {
     return false;
 }
 
+// Goes back to where the first cell was closed: forgets what is no nearer and puts the cells before into their buckets again,
+// as far as a step reaches.
+static void go_back(aisle_togo *self) {
+    const uint32_t reach_back = DIAGONAL * self->dear, first = self->since > reach_back ? self->since - reach_back : 0U;
+    memset(self->count, 0, sizeof self->count);
+    for (uint32_t cell = 0; cell < self->w * self->h; cell++) {
+        const uint32_t cost = self->cost[cell];
+        if (is_reached(self, cell) && cost >= first) {
+            self->cost[cell] = AISLE_TOGO_NONE;
+            if (cost < self->since) {
+                reach(self, cell, cost);
+            }
+        }
+    }
+    self->at = first;
+    self->limit = COST_MAX;
+}
+
 aisle_status aisle_togo_step(aisle_togo *self, uint32_t units, uint32_t *spent) {
     uint32_t before = self->cells / CELLS_A_UNIT;
+    if (self->since <= self->at) { // what lies beyond the end of the search hangs on nothing
+        go_back(self);
+    }
+    self->since = AISLE_TOGO_NONE;
     bool more = next_bucket(self);
     while (more && self->cells / CELLS_A_UNIT - before < units) {
         uint32_t bucket = self->at % AISLE_TOGO_RING;

@@ -31,7 +31,8 @@ typedef struct aisle_togo {
     uint32_t open_from;              // least field value of an open planning cell
     uint32_t clear_from, dear;       // below that field value a step is so many times as dear
     uint32_t at, limit, start, goal; // cost under way; where it ends; the cells of start and goal
-    uint32_t cells;                  // looked at
+    uint32_t since; // least cost of a cell that was closed after it was reached; AISLE_TOGO_NONE: none was
+    uint32_t cells; // looked at
 } aisle_togo;
 
 #define AISLE_TOGO_NONE UINT16_MAX
@@ -54,8 +55,10 @@ void aisle_togo_keep_clear(aisle_togo *self, double clear, uint32_t dear);
 // surely, and the start's own. What such cells connect is connected; narrower ways are not seen.
 void aisle_togo_insist(aisle_togo *self, double reach);
 
-// Between start() and the first step(): closes all that is less than `radius` (m) from the segment a b, but for the
-// start's own cell. The goal's cell closed: nothing is reached. O(cells of the segment's box).
+// Between start() and the first step(), or when the search has ended: closes all that is less than `radius` (m) from the
+// segment a b, but for the start's own cell. The goal's cell closed: nothing is reached. A search that has ended is gone on
+// with by step(): nothing hangs on what is farther from the goal, so only what is no nearer than the cells now closed is
+// searched anew. O(cells of the segment's box).
 void aisle_togo_close(aisle_togo *self, aisle_vec2 a, aisle_vec2 b, double radius);
 
 // AISLE_BUSY; AISLE_OK: the start is reached; AISLE_PARTIAL: it is not. A unit for 32 cells.

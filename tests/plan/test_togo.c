@@ -168,6 +168,66 @@ static void test_a_shut_way_and_a_shut_goal_are_not_reached(void) {
                       search_closed(aisle_vec2_of(2.0, 2.0), aisle_vec2_of(2.0, 2.0), 0.1)); // the start's own
 }
 
+typedef struct closure {
+    aisle_vec2 a, b;
+    double radius;
+} closure;
+
+// Closes places before the first step, or one by one after each search.
+static aisle_status search_with(aisle_vec2 start, aisle_vec2 goal, bool ends, const closure *c, uint32_t n,
+                                bool by_and_by, uint32_t *spent) {
+    aisle_status st = AISLE_OK;
+    *spent = 0;
+    aisle_togo_start(&togo, aisle_layout_grid(&hall_layout), 0.5, start, goal);
+    if (ends) {
+        aisle_togo_end_at_start(&togo);
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        while (by_and_by && (st = aisle_togo_step(&togo, 3, spent)) == AISLE_BUSY) {
+        }
+        aisle_togo_close(&togo, c[i].a, c[i].b, c[i].radius);
+    }
+    while ((st = aisle_togo_step(&togo, 1000, spent)) == AISLE_BUSY) {
+    }
+    return st;
+}
+
+static void test_what_is_closed_by_and_by_is_as_if_it_had_been_closed_at_once(void) {
+    static uint16_t once[CELLS];
+    uint32_t unreached = 0, spent_once = 0, spent_by_and_by = 0;
+    for (uint64_t s = 0; s < 300; s++) {
+        aisle_rng rng = aisle_rng_seed(s);
+        const aisle_vec2 start = uniform_point(&rng, aisle_vec2_of(1.0, 1.0), aisle_vec2_of(8.5, 11.0));
+        const aisle_vec2 goal = uniform_point(&rng, aisle_vec2_of(11.5, 1.0), aisle_vec2_of(19.0, 11.0));
+        const bool ends = s % 3 > 0;
+        closure c[4];
+        for (int i = 0; i < 4; i++) {
+            const aisle_vec2 at = uniform_point(&rng, aisle_vec2_of(0.0, 0.0), aisle_vec2_of(20.0, 12.0));
+            const aisle_vec2 by = uniform_point(&rng, aisle_vec2_of(-2.0, -2.0), aisle_vec2_of(2.0, 2.0));
+            c[i] = (closure){at, aisle_vec2_add(at, by), uniform(&rng, 0.1, 0.9)};
+        }
+        uint32_t spent;
+        const aisle_status st = search_with(start, goal, ends, c, 4, false, &spent);
+        const uint32_t cells = togo.w * togo.h;
+        const double far = aisle_togo_at(&togo, start);
+        const uint32_t known = ends && st == AISLE_OK ? (uint32_t)(far / togo.size * 5.0 + 0.5) : AISLE_TOGO_NONE - 1U;
+        TEST_ASSERT_TRUE(cells <= CELLS);
+        memcpy(once, togo.cost, cells * sizeof once[0]);
+        spent_once += spent;
+        TEST_ASSERT_EQUAL(st, search_with(start, goal, ends, c, 4, true, &spent));
+        spent_by_and_by += spent;
+        for (uint32_t i = 0; i < cells; i++) {
+            // 0, not reached or closed: none can be entered
+            const uint16_t was = once[i] == AISLE_TOGO_NONE ? 0 : once[i];
+            const uint16_t is = togo.cost[i] == AISLE_TOGO_NONE ? 0 : togo.cost[i];
+            TEST_ASSERT_TRUE(was == is || (was > known && (is > known || is == 0)) || (was == 0 && is > known));
+        }
+        unreached += st == AISLE_PARTIAL ? 1U : 0U;
+    }
+    TEST_ASSERT_TRUE(unreached > 10U && unreached < 200U);
+    TEST_ASSERT_TRUE(spent_by_and_by < 4U * spent_once); // and not five times
+}
+
 static aisle_status search_insisting(double reach, aisle_vec2 start, aisle_vec2 goal) {
     aisle_status st;
     uint32_t spent = 0;
@@ -220,6 +280,7 @@ int main(void) {
     RUN_TEST(test_dear_steps_are_gone_round_where_that_is_cheaper);
     RUN_TEST(test_places_closed_are_gone_round);
     RUN_TEST(test_a_shut_way_and_a_shut_goal_are_not_reached);
+    RUN_TEST(test_what_is_closed_by_and_by_is_as_if_it_had_been_closed_at_once);
     RUN_TEST(test_insisting_every_step_between_centres_has_the_room);
     RUN_TEST(test_insisting_a_passage_of_just_the_width_is_not_seen);
     return UNITY_END();
