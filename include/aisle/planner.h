@@ -142,7 +142,7 @@ typedef enum aisle_counter {
     AISLE_COUNTER_NODES,            // nodes expanded, of the grid and of the tangent graph
     AISLE_COUNTER_SWARM_EVALS,      // candidate paths scored by the swarm
     AISLE_COUNTER_VERIFY_INTERVALS, // intervals of motion the verifier looked at
-    AISLE_COUNTER_WORK_UNITS,       // work units spent
+    AISLE_COUNTER_WORK_UNITS,       // work units spent by now, a layout's left out
     AISLE_COUNTER_OPEN_NODES_MAX,   // high-water mark of the grid search's open list
     AISLE_COUNTER_CCD_CALLS,        // narrow-phase tests that separating axes left to libccd
     AISLE_COUNTER_CCD_SUPPORT_MAX,  // most support calls of one of them
@@ -160,6 +160,8 @@ typedef enum aisle_counter {
     AISLE_COUNTER_ROADMAP_REPAIRS,  // and repaired where a layout had changed
     AISLE_COUNTER_ARM_GOALS,        // arm goals answered
     AISLE_COUNTER_ARM_PATHS,        // with a proved motion
+    AISLE_COUNTER_CYCLE_INPUTS,     // poses and obstacles taken that a cycle of the mission is to answer
+    AISLE_COUNTER_CYCLES, // cycles done, whatever asked for them; one answers every such input taken before it
     AISLE_COUNTER_COUNT
 } aisle_counter;
 

@@ -9,6 +9,8 @@
 #error "the planner's block is an arena"
 #endif
 
+#define LAYOUT_ROW 8U // work units of a step that a layout's row or polygon stands for: it takes about so much longer
+
 // ---- memory
 
 static bool resolve(uint32_t *value, uint32_t standard, uint32_t lo, uint32_t hi) {
@@ -209,7 +211,6 @@ static void count_route(aisle_planner *self) {
     counters[AISLE_COUNTER_SWARM_EVALS] += route->swarm_evals;
     counters[AISLE_COUNTER_VERIFY_FAILED] += route->verify_failed;
     counters[AISLE_COUNTER_VERIFY_INTERVALS] += route->intervals;
-    counters[AISLE_COUNTER_WORK_UNITS] += route->spent;
     counters[AISLE_COUNTER_OPEN_NODES_MAX] = route->seed.search.open_used_max;
     counters[AISLE_COUNTER_ROADMAPS] = route->keep.begun + route->sample.copy.begun;
     counters[AISLE_COUNTER_ROADMAP_REPAIRS] = route->keep.repairs + route->sample.copy.repairs;
@@ -254,7 +255,9 @@ static void step_route(aisle_planner *self, uint32_t units) {
         count_route(self);
         return;
     }
+    const uint32_t before = self->route->spent;
     aisle_status st = aisle_route_step(self->route, units);
+    self->counters[AISLE_COUNTER_WORK_UNITS] += self->route->spent - before;
     if (st == AISLE_OK) {
         end_route(self);
     } else if (st == AISLE_PARTIAL && !self->route->request.is_query && !self->leaving.under_way) {
@@ -265,7 +268,7 @@ static void step_route(aisle_planner *self, uint32_t units) {
 // Builds the layout, then holds the answers remembered against it.
 static void step_layout(aisle_planner *self, uint32_t units) {
     if (!aisle_layout_is_in_force(self->layout)) {
-        if (aisle_layout_build(self->layout, units) == AISLE_OK) {
+        if (aisle_layout_build(self->layout, units / LAYOUT_ROW + 1U) == AISLE_OK) {
             aisle_route_layout_changed(self->route, self->layout);
         }
     } else if (aisle_route_step_change(self->route, units) == AISLE_OK) {

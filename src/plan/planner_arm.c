@@ -117,7 +117,6 @@ void aisle_planner_arm_begin(aisle_planner *self, const aisle_request *request) 
 static void count(aisle_planner *self) {
     const aisle_arm_route *route = &self->arm->route;
     int64_t *counters = self->counters;
-    counters[AISLE_COUNTER_WORK_UNITS] += route->spent;
     counters[AISLE_COUNTER_VERIFY_FAILED] += route->verify_failed;
     counters[AISLE_COUNTER_VERIFY_INTERVALS] += route->intervals;
     counters[AISLE_COUNTER_CCD_CALLS] += route->collide.calls;
@@ -128,7 +127,10 @@ static void count(aisle_planner *self) {
 
 void aisle_planner_arm_step(aisle_planner *self, uint32_t units) {
     aisle_planner_arm *arm = self->arm;
-    if (aisle_arm_route_step(&arm->route, units) == AISLE_BUSY) {
+    const uint32_t before = arm->route.spent;
+    const aisle_status st = aisle_arm_route_step(&arm->route, units);
+    self->counters[AISLE_COUNTER_WORK_UNITS] += arm->route.spent - before;
+    if (st == AISLE_BUSY) {
         return;
     }
     arm->planning = false;

@@ -338,11 +338,13 @@ void aisle_planner_step_cycle(aisle_planner *self, uint32_t units) {
     if (drive->stage == AISLE_DRIVE_IDLE) {
         begin_cycle(self);
     }
-    if (aisle_drive_step(drive, units, &verdict) != AISLE_OK) {
-        return;
-    }
+    const aisle_status st = aisle_drive_step(drive, units, &verdict);
     self->counters[AISLE_COUNTER_WORK_UNITS] += drive->spent;
     drive->spent = 0;
+    if (st != AISLE_OK) {
+        return;
+    }
+    self->counters[AISLE_COUNTER_CYCLES]++;
     tell_verdict(self, verdict);
     if (drive->stops || drive->is_unfit) {
         after_stop(self);

@@ -149,6 +149,11 @@ static void try_refused_mission(aisle_planner *self) {
     }
 }
 
+// What a cycle goes by came while there is a plan: the next one answers it.
+static void count_cycle_input(aisle_planner *self) {
+    self->counters[AISLE_COUNTER_CYCLE_INPUTS] += self->drive.has_plan ? 1 : 0;
+}
+
 static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
     if (self->drive.stage != AISLE_DRIVE_IDLE) {
         return AISLE_BUSY;
@@ -180,6 +185,7 @@ static aisle_status take_pose(aisle_planner *self, const aisle_pose_msg *msg) {
         aisle_drive_drop(&self->drive);
     }
     try_refused_mission(self);
+    count_cycle_input(self);
     return AISLE_OK;
 }
 
@@ -280,6 +286,7 @@ static aisle_status take_obstacles(aisle_planner *self, const aisle_obstacles_ms
         return duplicate(self);
     }
     self->cycle_wanted = true;
+    count_cycle_input(self);
     return AISLE_OK;
 }
 

@@ -153,6 +153,27 @@ static void test_a_query_is_answered_by_a_path_that_keeps_the_margin(void) {
                      count(AISLE_COUNTER_VERIFY_INTERVALS) > 0 && count(AISLE_COUNTER_OPEN_NODES_MAX) > 0);
 }
 
+static void test_work_is_counted_as_it_is_spent(void) {
+    take_hall();
+    aisle_query_msg query = door_query(6, 2.0, 4.0, 10.0, 4.0);
+    query.options.objective = AISLE_OPTIONS_FASTEST;
+    query.options.planner = AISLE_OPTIONS_AUTO;
+    const int64_t start = count(AISLE_COUNTER_WORK_UNITS);
+    int64_t before = start;
+    int busy = 0, counted = 0;
+    TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_QUERY, &query));
+    for (; door_replies == 0; busy++) {
+        (void)aisle_planner_step(door, door_now, 300);
+        const int64_t spent = count(AISLE_COUNTER_WORK_UNITS) - before;
+        TEST_ASSERT_TRUE(spent <= 300 + 4096); // of one step, not of all since the request began
+        counted += spent > 0 ? 1 : 0;
+        before += spent;
+        door_pull_events();
+    }
+    TEST_ASSERT_TRUE(counted > 20 && counted >= busy - 2); // all but the one that begins it
+    TEST_ASSERT_EQUAL_INT64(door_reply.work_units, before - start);
+}
+
 static void test_a_layout_in_parts_is_in_force_when_the_last_one_is_in(void) {
     static aisle_layout_msg part[2];
     hall_add(1.0, 1.0, 2.0, 2.0);
@@ -1391,6 +1412,7 @@ int main(void) {
     RUN_TEST(test_init_refuses_what_breaks_its_rules);
     RUN_TEST(test_memory_rows_sum_up_to_memsize);
     RUN_TEST(test_a_query_is_answered_by_a_path_that_keeps_the_margin);
+    RUN_TEST(test_work_is_counted_as_it_is_spent);
     RUN_TEST(test_a_layout_in_parts_is_in_force_when_the_last_one_is_in);
     RUN_TEST(test_a_scanned_map_in_tiles_is_planned_on);
     RUN_TEST(test_a_patch_moves_a_polygon_and_a_gap_in_revisions_is_refused);

@@ -159,6 +159,26 @@ static void test_a_person_far_away_changes_nothing(void) {
     TEST_ASSERT_EQUAL_INT32(1, agv.revision);
 }
 
+static int64_t count(aisle_counter which) {
+    return aisle_planner_counters(door)[which];
+}
+
+static void test_poses_and_obstacles_are_counted_for_cycles_while_there_is_a_plan(void) {
+    setup_hall(40.0, 40.0);
+    open_hall(2.0, 5.0, 0.0);
+    see(7, 20.0, 35.0, 0.0, 0.0);
+    ticks(5);
+    TEST_ASSERT_EQUAL_INT64(0, count(AISLE_COUNTER_CYCLE_INPUTS));
+    TEST_ASSERT_EQUAL_INT64(0, count(AISLE_COUNTER_CYCLES));
+    go(1, 18.0, 5.0);
+    const int64_t first = count(AISLE_COUNTER_CYCLES); // of the plan, which no pose asked for
+    TEST_ASSERT_EQUAL_INT64(0, count(AISLE_COUNTER_CYCLE_INPUTS));
+    TEST_ASSERT_TRUE(first >= 1);
+    ticks(20);
+    TEST_ASSERT_EQUAL_INT64(40, count(AISLE_COUNTER_CYCLE_INPUTS));
+    TEST_ASSERT_EQUAL_INT64(first + 40, count(AISLE_COUNTER_CYCLES));
+}
+
 static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
     setup_hall(20.0, 3.0);
     open_hall(2.0, 1.5, 0.0);
@@ -592,6 +612,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_vehicle_alone_follows_one_path_to_its_goal);
     RUN_TEST(test_a_person_far_away_changes_nothing);
+    RUN_TEST(test_poses_and_obstacles_are_counted_for_cycles_while_there_is_a_plan);
     RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
     RUN_TEST(test_at_rest_it_is_told_once_that_it_yields_whoever_is_nearest);
     RUN_TEST(test_a_way_round_that_is_none_is_looked_for_ever_more_rarely);

@@ -232,6 +232,8 @@ COUNTERS = dict(
             "roadmap repairs",
             "arm goals",
             "arm paths",
+            "cycle inputs",
+            "cycles",
         ]
     )
 )
