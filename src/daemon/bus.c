@@ -18,7 +18,8 @@ static void on_message(const lcm_recv_buf_t *received, const char *name, void *u
     aisle_bus_subscription *subscription = user;
     aisle_bus *self = subscription->bus;
     (void)name;
-    aisle_status status = aisle_inbox_put(self->inbox, subscription->channel, received->data, received->data_size);
+    aisle_status status =
+        aisle_inbox_put(self->inbox, subscription->channel, received->recv_utime, received->data, received->data_size);
     if (status == AISLE_ERR_DATA) {
         tell(self, AISLE_BUS_OVERSIZE, subscription->channel);
     } else if (status == AISLE_ERR_CAPACITY) {

@@ -22,8 +22,14 @@ static int64_t host_real(void *ctx) {
     return read_us(CLOCK_REALTIME);
 }
 
+static int64_t host_processor(void *ctx) {
+    (void)ctx;
+    return read_us(CLOCK_THREAD_CPUTIME_ID);
+}
+
 aisle_clock_source aisle_clock_of_host(void) {
-    return (aisle_clock_source){.monotonic_us = host_monotonic, .real_us = host_real, .ctx = NULL};
+    return (aisle_clock_source){
+        .monotonic_us = host_monotonic, .real_us = host_real, .processor_us = host_processor, .ctx = NULL};
 }
 
 void aisle_clock_start(aisle_clock *self, aisle_clock_source source) {
@@ -38,6 +44,15 @@ int64_t aisle_clock_monotonic(const aisle_clock *self) {
 
 int64_t aisle_clock_utime(const aisle_clock *self, int64_t monotonic_us) {
     return self->start_real + (monotonic_us - self->start_monotonic);
+}
+
+int64_t aisle_clock_processor(const aisle_clock *self) {
+    return self->source.processor_us(self->source.ctx);
+}
+
+int64_t aisle_clock_monotonic_of(const aisle_clock *self, int64_t real_us) {
+    const int64_t age = self->source.real_us(self->source.ctx) - real_us;
+    return aisle_clock_monotonic(self) - (age > 0 && age <= AISLE_CLOCK_PAST_US ? age : 0);
 }
 
 static bool is_far(int64_t us) {

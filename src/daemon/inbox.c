@@ -113,7 +113,7 @@ static bool push_command(aisle_inbox *self, const void *bytes, size_t size) {
     return true;
 }
 
-aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, const void *bytes, size_t size) {
+aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, int64_t at_us, const void *bytes, size_t size) {
     AISLE_ASSERT((int)channel < AISLE_CHANNEL_INPUTS);
     self->received++;
     if (size > AISLE_MSG_DATAGRAM_MAX) {
@@ -130,6 +130,7 @@ aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, const voi
     aisle_inbox_slot *slot = &self->slots[slot_of(channel, bytes, size)];
     self->replaced += slot->order != 0 ? 1 : 0;
     slot->order = ++self->order;
+    slot->at_us = at_us;
     slot->size = (uint32_t)size;
     memcpy(slot->bytes, bytes, size);
     return AISLE_OK;
@@ -140,7 +141,8 @@ static bool peek_slot(const aisle_inbox *self, int slot, aisle_inbox_message *ou
         return false;
     }
     const aisle_inbox_slot *s = &self->slots[slot];
-    *out = (aisle_inbox_message){.channel = channel_of_slot(slot), .bytes = s->bytes, .size = s->size, .slot = slot};
+    *out = (aisle_inbox_message){
+        .channel = channel_of_slot(slot), .bytes = s->bytes, .size = s->size, .at_us = s->at_us, .slot = slot};
     return true;
 }
 

@@ -40,6 +40,7 @@ typedef struct aisle_inbox_command {
 
 typedef struct aisle_inbox_slot {
     uint64_t order; // of arrival; 0 = empty
+    int64_t at_us;  // likewise
     uint32_t size;
     uint8_t bytes[AISLE_MSG_DATAGRAM_MAX];
 } aisle_inbox_slot;
@@ -65,15 +66,16 @@ typedef struct aisle_inbox_message {
     aisle_channel channel;
     const uint8_t *bytes; // until the next put() or pop()
     size_t size;
-    int slot; // where it lies: AISLE_INBOX_SLOT_..., AISLE_INBOX_IN_RING or AISLE_INBOX_IN_COMMANDS
+    int64_t at_us; // of its arrival, of a snapshot in its slot; else 0
+    int slot;      // where it lies: AISLE_INBOX_SLOT_..., AISLE_INBOX_IN_RING or AISLE_INBOX_IN_COMMANDS
 } aisle_inbox_message;
 
 // ring: aligned to 8, at least 2 * AISLE_MSG_DATAGRAM_MAX bytes; the caller's as long as the inbox.
 void aisle_inbox_init(aisle_inbox *self, void *ring, size_t capacity);
 
-// Takes a copy. channel: an input. AISLE_ERR_DATA: longer than AISLE_MSG_DATAGRAM_MAX (bytes are not looked at).
+// Takes a copy. channel: an input. at_us: when it arrived, by any clock; kept for the caller. AISLE_ERR_DATA: longer than AISLE_MSG_DATAGRAM_MAX (bytes are not looked at).
 // AISLE_ERR_CAPACITY: no room, counted in dropped.
-aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, const void *bytes, size_t size);
+aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, int64_t at_us, const void *bytes, size_t size);
 
 // The next message in order, which stays until pop(). False: empty.
 bool aisle_inbox_peek(const aisle_inbox *self, aisle_inbox_message *out);

@@ -1,6 +1,7 @@
 #include "daemon/loop.h"
 
 #include "base/check.h"
+#include "base/vec.h"
 #include "daemon/report.h"
 
 #include <inttypes.h>
@@ -13,6 +14,7 @@
 #define SLICE_MIN 64U // work units
 #define SLICE_MAX 1000000U
 #define SLICE_FIRST 512U
+#define SLICE_FADES (1.0 / 32) // of what the slowest work took a unit, with each slice
 #define WAIT_MAX_US 1000000
 
 static int64_t now(const aisle_loop *self) {
@@ -104,9 +106,8 @@ static void publish(aisle_loop *self, aisle_channel channel, const void *bytes, 
 }
 
 // The planning time of an answer; a renewal of the last path keeps its own.
-static float planning_time(aisle_loop *self, const aisle_event *event) {
-    bool path = event->kind == AISLE_EVENT_PATH;
-    if (path && aisle_path_is_renewal(&self->path_seen, event->bytes)) {
+static float planning_time(aisle_loop *self, bool path, bool renewal) {
+    if (renewal) {
         return self->path_planning_time;
     }
     float seconds = (float)self->planning_us * 1e-6F;
@@ -118,18 +119,25 @@ static float planning_time(aisle_loop *self, const aisle_event *event) {
     return seconds;
 }
 
-static void send_events(aisle_loop *self, int64_t utime) {
+// answered: by the cycle that this step has ended; NULL: none, or it had nothing to answer.
+static void send_events(aisle_loop *self, int64_t utime, const aisle_loop_asked *answered) {
     aisle_event event;
     while (aisle_planner_next_event(self->parts.planner, &event)) {
         const aisle_channel channel = aisle_channel_of_event(event.kind);
         AISLE_ASSERT(event.size <= sizeof self->out);
         memcpy(self->out, event.bytes, event.size);
-        const float seconds = planning_time(self, &event);
+        const bool path = event.kind == AISLE_EVENT_PATH;
+        const bool renewal = path && aisle_path_is_renewal(&self->path_seen, event.bytes);
+        const float seconds = planning_time(self, path, renewal);
         if (aisle_channel_type(channel) == AISLE_MSG_PATH) {
             AISLE_ASSERT(event.size > aisle_path_offset("num_waypoints"));
             aisle_path_put_float(self->out, "planning_time", seconds);
         }
         publish(self, channel, self->out, event.size);
+        if (answered != NULL && path && !renewal) {
+            aisle_histogram_add(&self->timers[AISLE_TIMER_ANSWER], now(self) - answered->at_us);
+            aisle_histogram_add(&self->timers[AISLE_TIMER_ANSWER_WORK], answered->processor_us);
+        }
         aisle_record_message(self->parts.record, utime, channel, self->out, event.size);
         self->progress = true;
     }
@@ -187,8 +195,15 @@ static bool is_layout(aisle_channel channel) {
     return channel == AISLE_CHANNEL_LAYOUT || channel == AISLE_CHANNEL_LAYOUT_PATCH || channel == AISLE_CHANNEL_GRID;
 }
 
-static int64_t layouts(const aisle_loop *self) {
-    return aisle_planner_counters(self->parts.planner)[AISLE_COUNTER_LAYOUTS];
+static int64_t count(const aisle_loop *self, aisle_counter which) {
+    return aisle_planner_counters(self->parts.planner)[which];
+}
+
+static void note_asked(aisle_loop *self, int64_t received_us) {
+    if (!self->asked.waits && received_us != 0) {
+        const int64_t at = aisle_clock_monotonic_of(self->parts.clock, received_us);
+        self->asked = (aisle_loop_asked){.waits = true, .at_us = at, .processor_us = 0};
+    }
 }
 
 // Hands one message to the planner; AISLE_BUSY: it stays where it is.
@@ -203,7 +218,11 @@ static aisle_status take(aisle_loop *self, const aisle_inbox_message *message) {
         return AISLE_ERR_DATA;
     }
     const int64_t utime = aisle_clock_utime(self->parts.clock, now(self));
+    const int64_t cycle_inputs = count(self, AISLE_COUNTER_CYCLE_INPUTS);
     status = aisle_feed_submit(&self->feed, self->parts.planner, utime);
+    if (count(self, AISLE_COUNTER_CYCLE_INPUTS) > cycle_inputs) {
+        note_asked(self, message->at_us);
+    }
     if (status != AISLE_BUSY) {
         aisle_record_message(self->parts.record, utime, message->channel, message->bytes, message->size);
     }
@@ -220,7 +239,7 @@ static aisle_status take(aisle_loop *self, const aisle_inbox_message *message) {
     self->idle = self->idle && status < 0;
     if (status >= 0 && status != AISLE_BUSY && is_layout(message->channel)) {
         self->settling = true;
-        self->layouts_seen = layouts(self);
+        self->layouts_seen = count(self, AISLE_COUNTER_LAYOUTS);
     }
     return status;
 }
@@ -228,7 +247,7 @@ static aisle_status take(aisle_loop *self, const aisle_inbox_message *message) {
 // True while a message must wait for the layout that is taking effect: what is planned anew then starts from the pose
 // held.
 static bool waits_for_layout(aisle_loop *self, aisle_channel channel) {
-    self->settling = self->settling && !self->idle && layouts(self) == self->layouts_seen;
+    self->settling = self->settling && !self->idle && count(self, AISLE_COUNTER_LAYOUTS) == self->layouts_seen;
     return self->settling && channel != AISLE_CHANNEL_COMMAND && channel != AISLE_CHANNEL_OBSTACLES;
 }
 
@@ -257,15 +276,30 @@ static void feed(aisle_loop *self) {
 
 // ---- planning
 
-static void choose_slice(aisle_loop *self, int64_t took_us, bool whole) {
-    if (self->parts.settings->work_units_per_slice != 0) {
+// A slice follows the slowest work of late, for kinds of work differ tenfold and the next one may be any. Slices that ended
+// early say little of a unit, unless they took too long.
+static void choose_slice(aisle_loop *self, int64_t took_us, int64_t spent) {
+    const bool tells = spent >= self->slice / 2U || (took_us > AISLE_LOOP_SLICE_US && spent >= SLICE_MIN);
+    if (self->parts.settings->work_units_per_slice != 0 || !tells) {
         return;
     }
-    if (took_us > AISLE_LOOP_SLICE_US && self->slice > SLICE_MIN) {
-        self->slice /= 2U;
-    } else if (whole && took_us < AISLE_LOOP_SLICE_US / 2 && self->slice < SLICE_MAX) {
-        self->slice += self->slice / 2U;
+    const double unit_us = (double)took_us / (double)spent, before = self->unit_us * (1.0 - SLICE_FADES);
+    self->unit_us = unit_us > before ? unit_us : before;
+    const double most =
+        aisle_min(2.0 * (double)self->slice, SLICE_MAX); // one that was too quick to be timed says little
+    const double units = self->unit_us * most > AISLE_LOOP_SLICE_US ? AISLE_LOOP_SLICE_US / self->unit_us : most;
+    self->slice = units > SLICE_MIN ? (uint32_t)units : SLICE_MIN;
+}
+
+// What came before a cycle began is answered when it ends. An idle planner has nothing to answer.
+static bool note_answered(aisle_loop *self, int64_t cycles, aisle_loop_asked *answered) {
+    const bool ended = self->asked.waits && count(self, AISLE_COUNTER_CYCLES) > cycles;
+    *answered = self->asked;
+    if (ended) {
+        aisle_histogram_add(&self->timers[AISLE_TIMER_CYCLE], now(self) - answered->at_us);
     }
+    self->asked.waits = self->asked.waits && !ended && !self->idle;
+    return ended;
 }
 
 static void step(aisle_loop *self) {
@@ -274,16 +308,20 @@ static void step(aisle_loop *self) {
         return;
     }
     aisle_record_step(self->parts.record, utime, self->slice);
+    const int64_t units = count(self, AISLE_COUNTER_WORK_UNITS), cycles = count(self, AISLE_COUNTER_CYCLES);
+    const int64_t processor = aisle_clock_processor(self->parts.clock);
     aisle_status status = aisle_planner_step(self->parts.planner, utime, self->slice);
-    int64_t took = now(self) - start;
+    int64_t took = now(self) - start, worked = aisle_clock_processor(self->parts.clock) - processor;
+    int64_t spent = count(self, AISLE_COUNTER_WORK_UNITS) - units;
     aisle_histogram_add(&self->timers[AISLE_TIMER_STEP], took);
     self->planning_us += took;
     self->idle = status != AISLE_BUSY;
-    choose_slice(self, took, status == AISLE_BUSY);
-    int64_t spent = aisle_planner_counters(self->parts.planner)[AISLE_COUNTER_WORK_UNITS];
-    self->progress = self->progress || spent != self->work_units_seen;
-    self->work_units_seen = spent;
-    send_events(self, utime);
+    self->progress = self->progress || spent > 0;
+    self->asked.processor_us += worked;
+    choose_slice(self, worked, spent);
+    aisle_loop_asked answered;
+    bool answers = note_answered(self, cycles, &answered);
+    send_events(self, utime, answers ? &answered : NULL);
 }
 
 // ---- turns

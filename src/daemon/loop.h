@@ -1,8 +1,12 @@
 // loop.h - the daemon's event loop: bus in, planner in slices, bus out, heartbeat. Level 5.
 //
 // One turn: wait for the bus, a signal or the next thing due; drain the bus; hand messages to the planner in order;
-// step it for about 2 ms; send what it answers; send _STATUS (at its rate and on change) and _DIAG when due; tell the
+// step it for about 1 ms; send what it answers; send _STATUS (at its rate and on change) and _DIAG when due; tell the
 // watchdog if something moved. Planning never holds up the bus or the heartbeat by more than one slice.
+//
+// A slice is as many work units as take AISLE_LOOP_SLICE_US of processor time at the slowest work of late; a search in hand
+// holds up a pose or obstacles by that, for the planner puts their cycle before it. Kinds of work differ tenfold by the unit,
+// so a slice may now and then be longer once. How long messages wait in all is timed: AISLE_TIMER_CYCLE and below.
 //
 // A message the planner cannot take yet stays first in line. Layout, patch, grid and vehicle also wait until the
 // planner is idle (feed.h), and while a layout is taking effect all but commands and obstacles wait. So the answers
@@ -30,7 +34,7 @@
 #include "daemon/record.h"
 #include "daemon/settings.h"
 
-#define AISLE_LOOP_SLICE_US 2000       // aimed at by the chosen slice
+#define AISLE_LOOP_SLICE_US 1000       // of processor time, aimed at by the chosen slice
 #define AISLE_LOOP_FAULT_US 1000000    // a fault is shown this long
 #define AISLE_LOOP_STATUS_GAP_US 20000 // at least, between two _STATUS
 
@@ -46,6 +50,9 @@ typedef enum aisle_timer {
     AISLE_TIMER_REQUEST, // planning of one answer, over all its slices
     AISLE_TIMER_DECODE,  // decoding one message
     AISLE_TIMER_PUBLISH, // sending one message
+    AISLE_TIMER_CYCLE, // from the host's receiving a pose or obstacles, the oldest if several, to the cycle's verdict on it
+    AISLE_TIMER_ANSWER,      // the same of those that changed the path, until that was sent
+    AISLE_TIMER_ANSWER_WORK, // the planner's processor time in it
     AISLE_TIMER_COUNT
 } aisle_timer;
 
@@ -78,16 +85,24 @@ typedef struct aisle_loop_parts {
     int stop_fd;            // readable = stop; -1 = never
 } aisle_loop_parts;
 
+// A pose or obstacles that the planner has taken and a cycle is to answer.
+typedef struct aisle_loop_asked {
+    bool waits;
+    int64_t at_us;        // monotonic, when the host received the first of them
+    int64_t processor_us; // of the planner's steps since
+} aisle_loop_asked;
+
 typedef struct aisle_loop {
     aisle_loop_parts parts;
     aisle_feed feed;
-    bool idle;                            // the planner has nothing to do before its deadline
-    bool settling;                        // a layout is taking effect
-    int64_t layouts_seen;                 // AISLE_COUNTER_LAYOUTS when it was taken
-    bool progress;                        // something moved since the last watchdog ping
-    uint32_t slice;                       // work units of the next slice
-    int64_t planning_us;                  // spent in step() since the last answer
-    int64_t work_units_seen;              // of the planner, at the last look for progress
+    bool idle;            // the planner has nothing to do before its deadline
+    bool settling;        // a layout is taking effect
+    int64_t layouts_seen; // AISLE_COUNTER_LAYOUTS when it was taken
+    bool progress;        // something moved since the last watchdog ping
+    uint32_t slice;       // work units of the next slice
+    double unit_us;       // of processor time, of the slowest work of late; 0: not known
+    int64_t planning_us;  // spent in step() since the last answer
+    aisle_loop_asked asked;
     aisle_path_seen path_seen;            // the last path sent
     float path_planning_time;             // likewise, s
     int64_t malformed, over_limit, stuck; // messages refused: by the decoder, over a bound, by an idle planner

@@ -23,7 +23,7 @@ typedef struct aisle_settings {
     char prefix[AISLE_SETTINGS_PREFIX_MAX + 1]; // of every channel
     uint32_t queue_bytes;                       // of messages that must not be lost and wait for the planner
     int32_t work_units;                         // budget of a request that names none
-    uint32_t work_units_per_slice;              // 0 = as many as take about 2 ms, measured as it goes
+    uint32_t work_units_per_slice;              // 0 = as many as take about 1 ms, measured as it goes
     bool remember;                              // answers: else every request is planned anew
     bool skip_unreachable;                      // goals of a list that are proved to be out of reach, if others are not
     aisle_limits limits;                        // 0 = default, as in limits.h

@@ -17,6 +17,7 @@ struct aisle_planner {
     request queue[QUEUE_MAX];
     uint32_t waiting;
     uint32_t building; // work units left of a layout
+    uint32_t cycle;    // and of a cycle
     int64_t counters[AISLE_COUNTER_COUNT];
     int64_t now, next_lease;
     int32_t path_revision;
@@ -77,9 +78,10 @@ aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const ais
     if (input->kind == AISLE_INPUT_LAYOUT && self->building > 0) {
         return AISLE_BUSY;
     }
+    bool asks = fake.units_per_cycle > 0 && (input->kind == AISLE_INPUT_POSE || input->kind == AISLE_INPUT_OBSTACLES);
     bool is_request = input->kind == AISLE_INPUT_QUERY || input->kind == AISLE_INPUT_GOALS;
     uint32_t most = fake.requests_max == 0 ? 4U : fake.requests_max;
-    if (fake.busy_always || (is_request && self->waiting == most)) {
+    if (fake.busy_always || (is_request && self->waiting == most) || (asks && self->cycle > 0)) {
         return AISLE_BUSY;
     }
     if (fake.refuse_all) {
@@ -92,6 +94,10 @@ aisle_status aisle_planner_submit(aisle_planner *self, int64_t now_us, const ais
     self->counters[AISLE_COUNTER_INPUTS]++;
     if (input->kind == AISLE_INPUT_LAYOUT) {
         self->building = fake.units_per_layout;
+    }
+    if (asks) {
+        self->counters[AISLE_COUNTER_CYCLE_INPUTS]++;
+        self->cycle = fake.units_per_cycle;
     }
     if (is_request) {
         self->queue[self->waiting++] =
@@ -138,6 +144,17 @@ static void work(aisle_planner *self, uint32_t work_units) {
     }
 }
 
+static void work_on_cycle(aisle_planner *self, uint32_t work_units) {
+    const uint32_t done = self->cycle < work_units ? self->cycle : work_units;
+    self->cycle -= done;
+    self->counters[AISLE_COUNTER_WORK_UNITS] += done;
+    if (self->cycle == 0) {
+        self->counters[AISLE_COUNTER_CYCLES]++;
+        self->path.path_revision = self->path_revision += fake.cycle_changes ? 1 : 0;
+        self->event_waits = self->event_is_path = fake.cycle_changes || fake.cycle_renews;
+    }
+}
+
 aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t work_units) {
     self->now = now_us > self->now ? now_us : self->now;
     fake.steps++;
@@ -152,7 +169,9 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
         self->counters[AISLE_COUNTER_LAYOUTS] += self->building == 0 ? 1 : 0;
         return AISLE_BUSY;
     }
-    if (!self->event_waits && self->waiting > 0) {
+    if (!self->event_waits && self->cycle > 0) {
+        work_on_cycle(self, work_units);
+    } else if (!self->event_waits && self->waiting > 0) {
         work(self, work_units);
     } else if (fake.lease_us > 0 && self->path_held && self->now >= self->next_lease) {
         self->path.utime = self->now;
@@ -160,7 +179,7 @@ aisle_status aisle_planner_step(aisle_planner *self, int64_t now_us, uint32_t wo
         self->event_waits = self->event_is_path = true;
         self->next_lease = self->now + fake.lease_us;
     }
-    return self->event_waits || self->waiting > 0 ? AISLE_BUSY : AISLE_OK;
+    return self->event_waits || self->cycle > 0 || self->waiting > 0 ? AISLE_BUSY : AISLE_OK;
 }
 
 bool aisle_planner_next_event(aisle_planner *self, aisle_event *event) {

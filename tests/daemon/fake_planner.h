@@ -25,6 +25,9 @@ typedef struct fake_planner {
     bool refuse_all;                 // submit() answers AISLE_ERR_DATA
     bool busy_always;                // submit() answers AISLE_BUSY even when idle
     bool hang;                       // step() stays BUSY and does no work
+    uint32_t units_per_cycle;        // > 0: poses and obstacles are cycles, which go before requests
+    bool cycle_changes;              // each of which sends another path,
+    bool cycle_renews;               // or the same one again
     int64_t lease_us;                // > 0: the last path is renewed this often
     void (*on_step)(uint32_t units); // called by step(), e.g. to let a test clock run
     // What happened.

@@ -24,7 +24,7 @@ void tearDown(void) {
 }
 
 static void put_text(aisle_channel channel, const char *text) {
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, channel, text, strlen(text)));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, channel, 0, text, strlen(text)));
     TEST_ASSERT_TRUE(aisle_inbox_invariants_hold(&inbox));
 }
 static void expect_text(aisle_channel channel, const char *text) {
@@ -52,6 +52,20 @@ static void test_ordered_messages_come_out_as_they_went_in(void) {
     expect_text(AISLE_CHANNEL_GRID, "three");
     expect_text(AISLE_CHANNEL_LAYOUT_PATCH, "four");
     expect_empty();
+}
+static void test_a_snapshot_tells_when_it_came_until_it_is_pinned(void) {
+    aisle_inbox_message m;
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_POSE, 1000, "old", 3));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_POSE, 2000, "new", 3));
+    TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
+    TEST_ASSERT_EQUAL_INT64(2000, m.at_us);
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GOALS, 3000, "goals", 5));
+    TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
+    TEST_ASSERT_EQUAL(AISLE_CHANNEL_POSE, m.channel);
+    TEST_ASSERT_EQUAL_INT64(0, m.at_us);
+    expect_text(AISLE_CHANNEL_POSE, "new");
+    TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
+    TEST_ASSERT_EQUAL_INT64(0, m.at_us);
 }
 static void test_newest_snapshot_replaces_the_older_one(void) {
     put_text(AISLE_CHANNEL_POSE, "old");
@@ -93,7 +107,7 @@ static void test_each_obstacle_source_has_a_slot_of_its_own(void) {
     for (int32_t round = 0; round < 2; round++) {
         for (int32_t source = 0; source < 4; source++) {
             const test_message *m = make_obstacles(source, 10 * source + round);
-            TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, m->bytes, m->size));
+            TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, 0, m->bytes, m->size));
         }
     }
     for (int32_t source = 0; source < 4; source++) {
@@ -108,13 +122,13 @@ static void test_each_obstacle_source_has_a_slot_of_its_own(void) {
 }
 static void test_hostile_obstacles_never_touch_the_slot_of_a_real_source(void) {
     const test_message *good = make_obstacles(3, 5);
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, good->bytes, good->size));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, 0, good->bytes, good->size));
     put_text(AISLE_CHANNEL_OBSTACLES, "");
     put_text(AISLE_CHANNEL_OBSTACLES, "short");
     static const int32_t sources[] = {4, -1, 256, 0x0103, 0x00010003, 0x01000003, INT32_MIN};
     for (size_t i = 0; i < sizeof sources / sizeof sources[0]; i++) {
         const test_message *m = make_obstacles(sources[i], 1);
-        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, m->bytes, m->size));
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_OBSTACLES, 0, m->bytes, m->size));
     }
     good = make_obstacles(3, 5);
     aisle_inbox_message got;
@@ -182,13 +196,13 @@ static void test_full_ring_refuses_counts_and_keeps_what_it_has(void) {
     static uint8_t big[40000];
     uint32_t taken = 0;
     memset(big, 7, sizeof big);
-    while (aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big) == AISLE_OK) {
+    while (aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, 0, big, sizeof big) == AISLE_OK) {
         taken++;
     }
     TEST_ASSERT_EQUAL_UINT32(3, taken);
     TEST_ASSERT_EQUAL_INT64(1, inbox.dropped[AISLE_CHANNEL_GRID]);
     TEST_ASSERT_EQUAL(AISLE_OK,
-                      aisle_inbox_put(&inbox, AISLE_CHANNEL_POSE, big, 100)); // snapshots have their own place
+                      aisle_inbox_put(&inbox, AISLE_CHANNEL_POSE, 0, big, 100)); // snapshots have their own place
     for (uint32_t i = 0; i < taken; i++) {
         aisle_inbox_message m;
         TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
@@ -196,19 +210,19 @@ static void test_full_ring_refuses_counts_and_keeps_what_it_has(void) {
         TEST_ASSERT_EQUAL_MEMORY(big, m.bytes, sizeof big);
         aisle_inbox_pop(&inbox, &m);
     }
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, 0, big, sizeof big));
     TEST_ASSERT_TRUE(inbox.used_max >= 3 * sizeof big && inbox.used_max <= RING);
 }
 static void test_message_a_few_bytes_too_long_for_the_rings_end_goes_to_its_start(void) {
     static uint8_t big[64992]; // 65000 with what stands in front of it: two leave 8 bytes
     for (uint32_t size = 1; size < 40; size++) {
         aisle_inbox_message m;
-        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big));
-        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big - size / 2U));
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, 0, big, sizeof big));
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, 0, big, sizeof big - size / 2U));
         TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
         aisle_inbox_pop(&inbox, &m);
-        TEST_ASSERT_EQUAL(
-            AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_QUERY, "0123456789012345678901234567890123456789", size));
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_QUERY, 0,
+                                                    "0123456789012345678901234567890123456789", size));
         TEST_ASSERT_TRUE(aisle_inbox_invariants_hold(&inbox));
         for (int i = 0; i < 2; i++) {
             TEST_ASSERT_TRUE(aisle_inbox_peek(&inbox, &m));
@@ -221,15 +235,16 @@ static void test_message_a_few_bytes_too_long_for_the_rings_end_goes_to_its_star
 }
 static void test_snapshot_that_finds_no_place_to_be_pinned_is_counted(void) {
     static uint8_t big[64990];
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, big, sizeof big));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_GRID, 0, big, sizeof big));
     put_text(AISLE_CHANNEL_QUERY, "q");
-    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_VEHICLE, big, sizeof big));
+    TEST_ASSERT_EQUAL(AISLE_OK, aisle_inbox_put(&inbox, AISLE_CHANNEL_VEHICLE, 0, big, sizeof big));
     put_text(AISLE_CHANNEL_QUERY, "r");
     TEST_ASSERT_EQUAL_INT64(1, inbox.dropped[AISLE_CHANNEL_VEHICLE]);
 }
 static void test_sizes_no_message_has_are_refused_unread(void) {
-    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, aisle_inbox_put(&inbox, AISLE_CHANNEL_QUERY, NULL, 4294967285U));
-    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, aisle_inbox_put(&inbox, AISLE_CHANNEL_POSE, NULL, AISLE_MSG_DATAGRAM_MAX + 1U));
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA, aisle_inbox_put(&inbox, AISLE_CHANNEL_QUERY, 0, NULL, 4294967285U));
+    TEST_ASSERT_EQUAL(AISLE_ERR_DATA,
+                      aisle_inbox_put(&inbox, AISLE_CHANNEL_POSE, 0, NULL, AISLE_MSG_DATAGRAM_MAX + 1U));
     TEST_ASSERT_EQUAL_INT64(2, inbox.oversize);
     expect_empty();
 }
@@ -243,7 +258,7 @@ static void test_ten_thousand_random_puts_and_takes_keep_order_and_content(void)
             uint32_t size = 4U + (seed >> 8) % (sizeof bytes - 4U);
             memset(bytes, (int)(in & 0xFFU), size);
             memcpy(bytes, &in, sizeof in);
-            if (aisle_inbox_put(&inbox, AISLE_CHANNEL_LAYOUT, bytes, size) == AISLE_OK) {
+            if (aisle_inbox_put(&inbox, AISLE_CHANNEL_LAYOUT, 0, bytes, size) == AISLE_OK) {
                 in++;
             } else {
                 refused++;
@@ -278,6 +293,7 @@ static void test_invariants_notice_spoilt_bookkeeping(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_ordered_messages_come_out_as_they_went_in);
+    RUN_TEST(test_a_snapshot_tells_when_it_came_until_it_is_pinned);
     RUN_TEST(test_newest_snapshot_replaces_the_older_one);
     RUN_TEST(test_goals_pin_the_snapshots_in_front_of_them);
     RUN_TEST(test_query_pins_the_vehicle_but_not_the_pose);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static uint64_t ring[1000000 / 8], block[FAKE_MEMSIZE / 8];
@@ -18,7 +19,7 @@ static aisle_clock host_clock;
 static aisle_notify notify;
 static aisle_loop loop;
 static aisle_planner *planner;
-static int64_t monotonic, real_offset;
+static int64_t monotonic, real_offset, processor;
 
 // What came out.
 static aisle_status_msg status;
@@ -34,6 +35,10 @@ static int64_t read_monotonic(void *ctx) {
 static int64_t read_real(void *ctx) {
     (void)ctx;
     return 1700000000000000 + monotonic + real_offset;
+}
+static int64_t read_processor(void *ctx) {
+    (void)ctx;
+    return processor;
 }
 static void on_status(const lcm_recv_buf_t *r, const char *channel, void *user) {
     (void)channel, (void)user;
@@ -55,6 +60,7 @@ static void on_path(const lcm_recv_buf_t *r, const char *channel, void *user) {
 // Each work unit takes a microsecond.
 static void work_takes_time(uint32_t units) {
     monotonic += units;
+    processor += units;
 }
 
 void setUp(void) {
@@ -75,7 +81,7 @@ void setUp(void) {
     monotonic = 1000000;
     real_offset = 0;
     num_status = num_diag = num_paths = 0;
-    aisle_clock_start(&host_clock, (aisle_clock_source){read_monotonic, read_real, NULL});
+    aisle_clock_start(&host_clock, (aisle_clock_source){read_monotonic, read_real, read_processor, NULL});
     (void)aisle_notify_open(&notify, NULL, NULL, NULL);
     aisle_loop_init(&loop, &(aisle_loop_parts){.settings = &settings,
                                                .planner = planner,
@@ -145,24 +151,59 @@ static void test_status_keeps_its_rate_while_planning(void) {
     TEST_ASSERT_TRUE(took >= 10000000 && took < 11000000);
     TEST_ASSERT_INT_WITHIN(2, 51, num_status);
     TEST_ASSERT_INT_WITHIN(2, 11, num_diag);
-    TEST_ASSERT_TRUE(loop.slice >= 500 && loop.slice <= 4000); // about 2 ms at a unit per microsecond
+    TEST_ASSERT_TRUE(loop.slice >= 500 && loop.slice <= 1000); // about 1 ms at a unit per microsecond
 }
 static uint32_t units_per_us, us_per_unit;
 static void work_takes_its_time(uint32_t units) {
     monotonic += units * us_per_unit / units_per_us;
+    processor += units * us_per_unit / units_per_us;
+}
+static void pass_turns_at(uint32_t units, uint32_t us, int turns) {
+    fake.on_step = work_takes_its_time;
+    units_per_us = units;
+    us_per_unit = us;
+    turn(turns);
 }
 static void test_slice_follows_the_speed_of_the_host_both_ways(void) {
     static const uint32_t speeds[][2] = {{1, 10}, {50, 1}, {1, 1}}; // units per us, us per unit
-    static const uint32_t bounds[][2] = {{80, 400}, {50000, 200000}, {1000, 4000}};
-    fake.on_step = work_takes_its_time;
+    static const uint32_t bounds[][2] = {{80, 100}, {40000, 51000}, {900, 1000}};
     fake.units_per_request = 1000000000;
     send_to(AISLE_CHANNEL_QUERY, 1);
     for (int i = 0; i < 3; i++) {
-        units_per_us = speeds[i][0];
-        us_per_unit = speeds[i][1];
-        turn(50);
+        pass_turns_at(speeds[i][0], speeds[i][1], 250);
         TEST_ASSERT_TRUE(loop.slice >= bounds[i][0] && loop.slice <= bounds[i][1]);
     }
+}
+static void test_slices_that_end_early_do_not_stretch_the_next(void) {
+    fake.units_per_request = 20;
+    fake.on_step = NULL; // so quick that they take no time at all
+    for (int32_t i = 0; i < 100; i++) {
+        send_to(AISLE_CHANNEL_QUERY, i);
+        turn(3);
+    }
+    TEST_ASSERT_EQUAL(100, num_paths);
+    TEST_ASSERT_TRUE(loop.slice <= 512);
+}
+static void test_slice_goes_by_the_slowest_work_of_late(void) {
+    fake.units_per_request = 1000000000;
+    send_to(AISLE_CHANNEL_QUERY, 1);
+    pass_turns_at(10, 1, 200);
+    TEST_ASSERT_TRUE(loop.slice >= 9000);
+    pass_turns_at(1, 1, 1); // one slice may be too long, the next is not
+    TEST_ASSERT_TRUE(loop.slice <= 1000);
+    pass_turns_at(10, 1, 5); // quicker work: not trusted at once
+    TEST_ASSERT_TRUE(loop.slice <= 1250);
+}
+static void others_have_the_processor(uint32_t units) {
+    monotonic += units * 10U;
+    processor += units;
+}
+static void test_slice_is_not_cut_short_by_what_others_do_on_the_host(void) {
+    fake.units_per_request = 1000000000;
+    fake.on_step = others_have_the_processor;
+    send_to(AISLE_CHANNEL_QUERY, 1);
+    turn(50);
+    TEST_ASSERT_TRUE(loop.slice >= 900);
 }
 static void test_fixed_slice_stays_as_set(void) {
     settings.work_units_per_slice = 77;
@@ -278,6 +319,57 @@ static void test_planning_time_is_the_work_of_that_answer_and_stays_in_renewals(
         TEST_ASSERT_EQUAL_INT32(paths[1].path_revision, paths[i].path_revision);
         TEST_ASSERT_INT64_WITHIN(5000, 500000, paths[i].utime - paths[i - 1].utime);
     }
+}
+// A pose while a long search is in hand; the host received it so many ms ago.
+static void ask_for_a_cycle(int32_t seq, int64_t ms_ago) {
+    send_to(AISLE_CHANNEL_POSE, seq);
+    struct timespec t;
+    TEST_ASSERT_EQUAL(0, clock_gettime(CLOCK_REALTIME, &t));
+    real_offset = (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000 + 1000 * ms_ago - 1700000000000000 - monotonic;
+}
+static float timer_ms(const float *of, aisle_timer which) {
+    return 1000.0F * of[which];
+}
+static void half_the_processor_is_ours(uint32_t units) {
+    monotonic += 2U * units;
+    processor += units;
+}
+static void test_cycles_and_answers_are_timed_from_when_the_host_had_the_message(void) {
+    fake.units_per_request = 1000000000;
+    fake.units_per_cycle = 2000;
+    fake.on_step = half_the_processor_is_ours;
+    send_to(AISLE_CHANNEL_GOALS, 1);
+    turn(20);
+    for (int i = 0; i < 9; i++) { // keep the path
+        ask_for_a_cycle(i, 1);
+        turn(10);
+    }
+    fake.cycle_changes = true;
+    ask_for_a_cycle(90, 50); // was long on its way
+    turn(10);
+    fake.cycle_changes = false;
+    fake.cycle_renews = true;
+    ask_for_a_cycle(100, 1);
+    turn(10);
+    turn_ms(1100);
+    TEST_ASSERT_EQUAL(2, num_paths);
+    TEST_ASSERT_EQUAL(11, diag.timer_count[AISLE_TIMER_CYCLE]);
+    TEST_ASSERT_EQUAL(1, diag.timer_count[AISLE_TIMER_ANSWER]);
+    TEST_ASSERT_EQUAL(1, diag.timer_count[AISLE_TIMER_ANSWER_WORK]);
+    // A cycle is two slices of 2 ms, and the search in hand gives way at once.
+    TEST_ASSERT_FLOAT_WITHIN(1.0F, 5.5F, timer_ms(diag.timer_p50, AISLE_TIMER_CYCLE));
+    TEST_ASSERT_FLOAT_WITHIN(1.0F, 54.5F, timer_ms(diag.timer_max, AISLE_TIMER_ANSWER));
+    TEST_ASSERT_TRUE(timer_ms(diag.timer_max, AISLE_TIMER_CYCLE) <= timer_ms(diag.timer_max, AISLE_TIMER_ANSWER));
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 2.0F, timer_ms(diag.timer_max, AISLE_TIMER_ANSWER_WORK));
+}
+static void test_renewals_and_answers_to_requests_are_no_answers_to_a_pose(void) {
+    fake.lease_us = 200000;
+    send_to(AISLE_CHANNEL_GOALS, 1);
+    send_to(AISLE_CHANNEL_POSE, 5); // asks for no cycle
+    turn_ms(1200);
+    TEST_ASSERT_TRUE(num_paths >= 5);
+    TEST_ASSERT_EQUAL(0, diag.timer_count[AISLE_TIMER_CYCLE]);
+    TEST_ASSERT_EQUAL(0, diag.timer_count[AISLE_TIMER_ANSWER]);
 }
 static void test_renewals_come_while_nothing_else_happens(void) {
     fake.lease_us = 500000;
@@ -439,6 +531,9 @@ int main(void) {
     RUN_TEST(test_status_and_diag_keep_their_rates);
     RUN_TEST(test_status_keeps_its_rate_while_planning);
     RUN_TEST(test_slice_follows_the_speed_of_the_host_both_ways);
+    RUN_TEST(test_slices_that_end_early_do_not_stretch_the_next);
+    RUN_TEST(test_slice_goes_by_the_slowest_work_of_late);
+    RUN_TEST(test_slice_is_not_cut_short_by_what_others_do_on_the_host);
     RUN_TEST(test_fixed_slice_stays_as_set);
     RUN_TEST(test_status_is_sent_on_change_but_not_in_a_burst);
     RUN_TEST(test_messages_reach_the_planner_in_order_and_outputs_their_channels);
@@ -447,6 +542,8 @@ int main(void) {
     RUN_TEST(test_layout_that_takes_effect_holds_up_what_starts_from_the_pose_but_no_command);
     RUN_TEST(test_fresh_pose_is_not_held_up_by_waiting_queries);
     RUN_TEST(test_planning_time_is_the_work_of_that_answer_and_stays_in_renewals);
+    RUN_TEST(test_cycles_and_answers_are_timed_from_when_the_host_had_the_message);
+    RUN_TEST(test_renewals_and_answers_to_requests_are_no_answers_to_a_pose);
     RUN_TEST(test_renewals_come_while_nothing_else_happens);
     RUN_TEST(test_malformed_message_is_counted_and_told_for_a_second);
     RUN_TEST(test_count_over_its_bound_is_a_limit);

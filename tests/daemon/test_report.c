@@ -28,7 +28,7 @@ void setUp(void) {
     aisle_planner *planner;
     aisle_config config = {.boot_id = 7};
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_planner_init(block, sizeof block, &config, &planner));
-    aisle_clock_start(&test_clock, (aisle_clock_source){read_time, read_time, &time_us});
+    aisle_clock_start(&test_clock, (aisle_clock_source){read_time, read_time, read_time, &time_us});
     aisle_loop_init(&loop, &(aisle_loop_parts){.settings = &settings,
                                                .planner = planner,
                                                .bus = &bus,

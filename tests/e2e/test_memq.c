@@ -91,7 +91,7 @@ void setUp(void) {
     open_bus();
     monotonic = 1000000;
     num_status = num_diag = num_paths = num_replies = 0;
-    aisle_clock_start(&host_clock, (aisle_clock_source){read_monotonic, read_real, NULL});
+    aisle_clock_start(&host_clock, (aisle_clock_source){read_monotonic, read_real, read_monotonic, NULL});
     (void)aisle_notify_open(&notify, NULL, NULL, NULL);
     aisle_loop_init(&loop, &(aisle_loop_parts){.settings = &settings,
                                                .planner = planner,

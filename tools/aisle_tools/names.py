@@ -198,7 +198,7 @@ def what(cause: int, ident: int) -> str:
 
 
 # timer_id and counter_id of diag_t: of the planner from 0, of the daemon from 100.
-TIMERS = dict(enumerate(["slice", "request", "decode", "publish"]))
+TIMERS = dict(enumerate(["slice", "request", "decode", "publish", "cycle", "answer", "answer's work"]))
 COUNTERS = dict(
     enumerate(
         [
