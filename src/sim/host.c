@@ -23,6 +23,7 @@ void aisle_sim_host_write_log(aisle_sim_host *self, int64_t utime, aisle_channel
 static void on_output(void *ctx, const aisle_replay_output *output) {
     aisle_sim_host *self = ctx;
     self->heard_paths += output->channel == AISLE_CHANNEL_PATH ? 1 : 0;
+    self->heard_changes += output->channel == AISLE_CHANNEL_PATH && !output->renewal ? 1 : 0;
     aisle_sim_host_write_log(self, output->utime, output->channel, output->bytes, output->size);
     self->heard(self->ctx, output->channel, output->utime, output->bytes, output->size);
 }
@@ -57,19 +58,22 @@ int64_t aisle_sim_host_cpu_us(void) {
 }
 
 typedef struct stopwatch {
-    int64_t wall_us, cpu_us, paths;
+    int64_t wall_us, cpu_us, paths, changes;
 } stopwatch;
 
 static stopwatch start_watch(const aisle_sim_host *self) {
-    return (stopwatch){aisle_sim_host_wall_us(), aisle_sim_host_cpu_us(), self->heard_paths};
+    return (stopwatch){aisle_sim_host_wall_us(), aisle_sim_host_cpu_us(), self->heard_paths, self->heard_changes};
 }
 
 static void stop_watch(aisle_sim_host *self, const stopwatch *from) {
-    int64_t wall = aisle_sim_host_wall_us() - from->wall_us;
+    int64_t wall = aisle_sim_host_wall_us() - from->wall_us, cpu = aisle_sim_host_cpu_us() - from->cpu_us;
     aisle_histogram_add(&self->work, wall);
     if (self->heard_paths > from->paths) {
         aisle_histogram_add(&self->answers, wall);
-        aisle_histogram_add(&self->answers_cpu, aisle_sim_host_cpu_us() - from->cpu_us);
+        aisle_histogram_add(&self->answers_cpu, cpu);
+    }
+    if (self->heard_changes > from->changes) {
+        aisle_histogram_add(&self->changes_cpu, cpu);
     }
 }
 

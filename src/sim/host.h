@@ -26,11 +26,6 @@
 typedef void (*aisle_sim_heard)(void *ctx, aisle_channel channel, int64_t utime, const uint8_t *bytes, size_t size);
 
 #define AISLE_SIM_EPOCH_US 1600000000000000 // of a core host
-#define AISLE_SIM_SENT_MAX 64
-
-typedef struct aisle_sim_sent { // a pose or obstacles
-    int64_t utime, at_us;       // as it says; when it was sent
-} aisle_sim_sent;
 
 typedef struct aisle_sim_host {
     const char *prefix; // of the channels
@@ -45,8 +40,8 @@ typedef struct aisle_sim_host {
     aisle_replay replay;
     int64_t next_status_us;
     int32_t status_seq;
-    int64_t heard_paths;  // on PATH
-    aisle_histogram work; // us of the computer's time for each input and each deadline, or each step
+    int64_t heard_paths, heard_changes; // on PATH, and those that are no renewals
+    aisle_histogram work;               // us of the computer's time for each input and each deadline, or each step
     // core at a speed
     uint32_t units_per_ms; // 0: planning takes no time
     aisle_record record;
@@ -57,14 +52,14 @@ typedef struct aisle_sim_host {
     // bus
     void *lcm; // NULL: a core host
     int fd;
-    int64_t start_us;                        // of the monotonic clock at the epoch
-    uint32_t burst;                          // messages sent without a pause
-    aisle_sim_sent sent[AISLE_SIM_SENT_MAX]; // the last inputs that paths name
-    uint32_t num_sent;
-    // all: us of the work that brought a path (core; at a speed: of the steps since the last one, in processor time), or from an input's sending to the first path that rests on
-    // it (bus)
+    int64_t start_us;    // of the monotonic clock at the epoch
+    uint32_t burst;      // messages sent without a pause
+    aisle_diag_msg told; // the daemon's last one: its timers say what this drive has taken it (daemon/loop.h)
+    // core: us of the work that brought a path, also the same one again with its lease renewed; at a speed: of the steps since
+    // the last one, in processor time
     aisle_histogram answers;
-    aisle_histogram answers_cpu; // core: the same in processor time, which others on the machine do not stretch
+    aisle_histogram answers_cpu; // in processor time, which others on the machine do not stretch
+    aisle_histogram changes_cpu; // of them that brought another path, at once
 } aisle_sim_host;
 
 // The planner in this process, its output to `heard`. settings, log: as long as the host. AISLE_ERR_*: as

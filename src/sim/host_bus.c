@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#define BURST 8       // messages between two pauses: receivers' queues are short
+#define BURST 8       // messages between two pauses, of the computer's or ours: receivers' queues are short
 #define PAUSE_US 2000 // and how long they are
 #define QUEUE 512     // messages of a subscription in liblcm
 
@@ -19,27 +19,6 @@ static int64_t now_us(const aisle_sim_host *self) {
     return self->epoch_us + aisle_sim_host_wall_us() - self->start_us;
 }
 
-// The first path that rests on an input answers it.
-static void note_answer(aisle_sim_host *self, const uint8_t *bytes, size_t size, int64_t now) {
-    static aisle_path_msg path; // large; one thread
-    if (aisle_msg_decode(AISLE_MSG_PATH, bytes, size, &path, NULL) != AISLE_OK) {
-        return;
-    }
-    int64_t last = -1;
-    for (uint32_t i = 0; i < AISLE_SIM_SENT_MAX; i++) {
-        aisle_sim_sent *sent = &self->sent[i];
-        if (sent->at_us > last && (sent->utime == path.pose_utime || sent->utime == path.obstacles_utime)) {
-            last = sent->at_us;
-        }
-    }
-    if (last >= 0) {
-        aisle_histogram_add(&self->answers, now - last);
-    }
-    for (uint32_t i = 0; i < AISLE_SIM_SENT_MAX; i++) { // no later path answers these
-        self->sent[i].at_us = self->sent[i].at_us <= last ? -1 : self->sent[i].at_us;
-    }
-}
-
 static void on_message(const lcm_recv_buf_t *received, const char *name, void *user) {
     aisle_sim_host *self = user;
     int64_t now = now_us(self);
@@ -47,8 +26,8 @@ static void on_message(const lcm_recv_buf_t *received, const char *name, void *u
     if (received->data_size > AISLE_MSG_DATAGRAM_MAX || channel == AISLE_CHANNEL_COUNT) {
         return;
     }
-    if (channel == AISLE_CHANNEL_PATH) {
-        note_answer(self, received->data, received->data_size, now);
+    if (channel == AISLE_CHANNEL_DIAG) {
+        (void)aisle_msg_decode(AISLE_MSG_DIAG, received->data, received->data_size, &self->told, NULL);
     }
     aisle_sim_host_write_log(self, now, channel, received->data, received->data_size);
     self->heard(self->ctx, channel, now, received->data, received->data_size);
@@ -68,9 +47,6 @@ aisle_status aisle_sim_host_start_bus(aisle_sim_host *self, const char *url, con
     self->log = log;
     self->heard = heard;
     self->ctx = ctx;
-    for (uint32_t i = 0; i < AISLE_SIM_SENT_MAX; i++) {
-        self->sent[i].at_us = -1;
-    }
     self->lcm = lcm_create(*url == '\0' ? NULL : url);
     bool good = self->lcm != NULL;
     for (int i = 0; i < OUTPUTS && good; i++) {
@@ -96,6 +72,7 @@ static bool wait_for_message(const aisle_sim_host *self, int64_t us) {
 }
 
 void aisle_sim_host_bus_advance(aisle_sim_host *self, int64_t utime) {
+    self->burst = utime - now_us(self) < PAUSE_US ? self->burst : 0;
     for (;;) {
         int64_t left = utime - now_us(self);
         if (!wait_for_message(self, left > 0 ? left : 0)) {
@@ -109,25 +86,12 @@ void aisle_sim_host_bus_advance(aisle_sim_host *self, int64_t utime) {
     }
 }
 
-static void note_sent(aisle_sim_host *self, aisle_channel channel, const uint8_t *bytes) {
-    if (channel != AISLE_CHANNEL_POSE && channel != AISLE_CHANNEL_OBSTACLES) {
-        return;
-    }
-    uint64_t utime = 0; // the first member, big-endian
-    for (size_t i = 0; i < 8; i++) {
-        utime = utime << 8U | bytes[AISLE_MSG_FINGERPRINT_SIZE + i];
-    }
-    self->sent[self->num_sent++ % AISLE_SIM_SENT_MAX] =
-        (aisle_sim_sent){.utime = (int64_t)utime, .at_us = now_us(self)};
-}
-
 void aisle_sim_host_bus_send(aisle_sim_host *self, int64_t utime, aisle_channel channel, const uint8_t *bytes,
                              size_t size) {
     char name[AISLE_CHANNEL_NAME_LEN];
-    AISLE_ASSERT(size > AISLE_MSG_FINGERPRINT_SIZE + 8U && size <= AISLE_MSG_DATAGRAM_MAX);
+    AISLE_ASSERT(size <= AISLE_MSG_DATAGRAM_MAX);
     aisle_sim_host_bus_advance(self, utime);
     aisle_channel_name(self->prefix, channel, name);
-    note_sent(self, channel, bytes);
     aisle_sim_host_write_log(self, now_us(self), channel, bytes, size);
     if (lcm_publish(self->lcm, name, bytes, (unsigned int)size) != 0) {
         self->failed = true;

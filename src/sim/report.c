@@ -1,5 +1,6 @@
 #include "sim/report.h"
 
+#include "daemon/loop.h"
 #include "replay/report.h"
 
 #include <inttypes.h>
@@ -16,6 +17,34 @@ static void text_of_times(const char *what, const aisle_histogram *h, FILE *out)
 static void json_of_times(const char *name, const aisle_histogram *h, FILE *out) {
     (void)fprintf(out, ",\n  \"%s\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}", name,
                   ms(h, 0.5), ms(h, 0.99), (double)h->max_us * 1e-3, h->count);
+}
+
+// What the daemon tells of a timer of its; count 0: nothing.
+typedef struct told {
+    int64_t count;
+    double p50, p99, max; // ms
+} told;
+
+static told told_of(const aisle_sim_host *host, aisle_timer which) {
+    const aisle_diag_msg *d = &host->told;
+    for (int16_t i = 0; i < d->num_timers; i++) {
+        if (d->timer_id[i] == (int8_t)which) {
+            return (told){d->timer_count[i], 1e3 * (double)d->timer_p50[i], 1e3 * (double)d->timer_p99[i],
+                          1e3 * (double)d->timer_max[i]};
+        }
+    }
+    return (told){0, 0.0, 0.0, 0.0};
+}
+
+static void text_of_told(const char *what, const aisle_sim_host *host, aisle_timer which, FILE *out) {
+    const told t = told_of(host, which);
+    (void)fprintf(out, "%s, ms: %" PRId64 " times, p50 %.3f, p99 %.3f, max %.3f\n", what, t.count, t.p50, t.p99, t.max);
+}
+
+static void json_of_told(const char *name, const aisle_sim_host *host, aisle_timer which, FILE *out) {
+    const told t = told_of(host, which);
+    (void)fprintf(out, ",\n  \"%s\": {\"p50\": %.4g, \"p99\": %.4g, \"max\": %.4g, \"count\": %" PRId64 "}", name,
+                  t.p50, t.p99, t.max, t.count);
 }
 
 static void text_of_contacts(const aisle_sim_judge *judge, FILE *out) {
@@ -82,12 +111,16 @@ void aisle_sim_report_text(const aisle_sim_episode *e, FILE *out) {
     text_of_contacts(judge, out);
     text_of_paths(e, out);
     text_of_faults(e, out);
-    text_of_times(e->host->lcm != NULL ? "from message to answer" : "work of what brought a path", &e->host->answers,
-                  out);
-    if (e->host->lcm == NULL) {
-        text_of_times("the same in processor time", &e->host->answers_cpu, out);
-        text_of_times("work of each input and deadline", &e->host->work, out);
+    if (e->host->lcm != NULL) {
+        text_of_told("aisled, from pose or obstacles to verdict", e->host, AISLE_TIMER_CYCLE, out);
+        text_of_told("of those that changed the path, to its sending", e->host, AISLE_TIMER_ANSWER, out);
+        text_of_told("the planner's processor time in it", e->host, AISLE_TIMER_ANSWER_WORK, out);
+        return;
     }
+    text_of_times("work of what brought a path", &e->host->answers, out);
+    text_of_times("the same in processor time", &e->host->answers_cpu, out);
+    text_of_times("of what brought another path", &e->host->changes_cpu, out);
+    text_of_times("work of each input and deadline", &e->host->work, out);
 }
 
 static void json_number(const char *name, double value, FILE *out) {
@@ -160,8 +193,15 @@ void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
     json_of_causes(e, out);
     json_of_contacts(judge, out);
     json_of_faults(e, out);
-    json_of_times("answer_ms", &e->host->answers, out);
-    json_of_times("answer_cpu_ms", &e->host->answers_cpu, out);
+    if (e->host->lcm != NULL) {
+        json_of_told("cycle_ms", e->host, AISLE_TIMER_CYCLE, out);
+        json_of_told("answer_ms", e->host, AISLE_TIMER_ANSWER, out);
+        json_of_told("answer_cpu_ms", e->host, AISLE_TIMER_ANSWER_WORK, out);
+    } else {
+        json_of_times("answer_ms", &e->host->answers, out);
+        json_of_times("answer_cpu_ms", &e->host->answers_cpu, out);
+        json_of_times("change_cpu_ms", &e->host->changes_cpu, out);
+    }
     json_of_times("work_ms", &e->host->work, out);
     (void)fprintf(out, "}\n");
 }

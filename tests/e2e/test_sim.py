@@ -34,7 +34,9 @@ def test_a_vehicle_is_driven_over_the_bus_and_the_record_replays(tmp_path, hall)
     assert done.returncode == 0, done.stdout + done.stderr
     figures = json.loads((tmp_path / "out" / "sim.json").read_text())
     assert figures["arrived"] and figures["collisions"] == figures["hall_collisions"] == 0
-    assert figures["answer_ms"]["count"] > 0
+    cycles, answers, work = (figures[k] for k in ("cycle_ms", "answer_ms", "answer_cpu_ms"))
+    assert cycles["count"] > 20 and cycles["p50"] <= cycles["p99"] <= cycles["max"] < 1000.0
+    assert answers["count"] == work["count"] <= cycles["count"]
     assert 0.95 < figures["time"] / figures["optimum"] < 1.3
     assert "different 0, missing 0, not recorded 0" in done.stdout
     channels = {c.split("_", 1)[1] for _, c, _ in read_events(tmp_path / "out" / "run.log")}

@@ -5,9 +5,10 @@ build/venv/bin/python tools/bench/movers_table.py [--counts 1,2,4,...] [--second
                                                   [--daemon] [--programs DIR]
 
 A hall of 50 x 50 m (1 million cells of 5 cm) with 40 pillars, the default vehicle, constant-velocity movers by one source
-at 15 Hz, poses at 20 Hz; aisle-sim drives to and fro and measures the processor time of every input that brought a path. With
---daemon aisled drives instead, in real time (run it by tools/netns-lo): then the time is from sending a pose or
-obstacles to receiving the first path that rests on it.
+at 15 Hz, poses at 20 Hz; aisle-sim drives to and fro and measures the processor time of every input that brought another path ("work"), or the same
+one with its lease renewed, too ("with renewals"). With --daemon aisled drives instead, in real time (run it by
+tools/netns-lo), and times itself: "verdict" is from the host's receiving a pose or obstacles to the cycle's verdict on it,
+"answer" of those that changed the path, until that was sent, and "work" the planner's processor time in an answer.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ PILLARS = 40
 MAP_ID = 1
 GOAL_COUNT = 40
 TARGET_MS, TARGET_COUNT = 5.0, 64
+CORE = [("work", "change_cpu_ms"), ("with renewals", "answer_cpu_ms")]  # columns, as named in aisle-sim's figures
+DAEMON = [("answer", "answer_ms"), ("work", "answer_cpu_ms"), ("verdict", "cycle_ms")]
 
 
 def main() -> int:
@@ -44,21 +47,24 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         setup = Path(folder) / "setup.log"
         write_setup(setup)
-        print(f"{'movers':>6} {'paths':>6} {'p50 ms':>8} {'p99 ms':>8} {'max ms':>8} {'collisions':>10} {'way m':>7}")
+        kinds = DAEMON if args.daemon else CORE
+        print(f"{'movers':>6} " + "".join(f"{name + ' p50':>20} {'p99':>8} {'max ms':>8}  of" for name, _ in kinds), end="")
+        print(f" {'collisions':>10} {'way m':>7}")
         for count in args.counts:
             row = run(args, setup, count)
             rows.append(row)
-            print(
-                f"{count:>6} {row['count']:>6} {row['p50']:>8.3f} {row['p99']:>8.3f} {row['max']:>8.3f}"
-                f" {row['collisions']:>10} {row['way']:>7.1f}",
-                flush=True,
-            )
+            print(f"{count:>6} " + " ".join(cells(row[key]) for _, key in kinds), end="")
+            print(f" {row['collisions']:>10} {row['way']:>7.1f}", flush=True)
     print("load average " + " ".join(f"{v:.2f}" for v in os.getloadavg()))
     if args.json is not None:
         args.json.write_text(json.dumps({"daemon": args.daemon, "rows": rows}, indent=1) + "\n")
     if args.out is not None:
         draw(args.out, rows, args.daemon)
     return 1 if any(r["collisions"] for r in rows) else 0
+
+
+def cells(times: dict) -> str:
+    return f"{times['p50']:>19.3f} {times['p99']:>8.3f} {times['max']:>8.3f} {times['count']:>4}"
 
 
 def parse() -> argparse.Namespace:
@@ -121,7 +127,7 @@ def run(args: argparse.Namespace, setup: Path, count: int) -> dict:
         sys.exit(f"aisle-sim: exit {done.returncode}\n{done.stderr}")
     figures = json.loads(out.read_text())
     collisions = figures["collisions"] + figures["hall_collisions"]
-    times = figures["answer_ms" if args.daemon else "answer_cpu_ms"]
+    times = {key: figures[key] for _, key in (DAEMON if args.daemon else CORE)}
     return {"movers": count, **times, "collisions": collisions, "way": figures["way"]}
 
 
@@ -140,10 +146,10 @@ def draw(path: Path, rows: list[dict], daemon: bool) -> None:
     figure, axis = pyplot.subplots(figsize=(7.0, 4.5), constrained_layout=True)
     counts = [max(r["movers"], 0.5) for r in rows]  # 0 has a place on the logarithmic axis, too
     for key, colour in (("p50", "#1f77b4"), ("p99", "#ff7f0e"), ("max", "#d62728")):
-        axis.loglog(counts, [r[key] for r in rows], "o-", ms=4, color=colour, label=key)
+        axis.loglog(counts, [r[(DAEMON if daemon else CORE)[0][1]][key] for r in rows], "o-", ms=4, color=colour, label=key)
     axis.plot(TARGET_COUNT, TARGET_MS, "k*", ms=10, label=f"target: p99 {TARGET_MS:g} ms at {TARGET_COUNT}")
     axis.set_xlabel("moving obstacles (0 drawn at 0.5)")
-    axis.set_ylabel("ms from message to answer over LCM" if daemon else "ms of work that brought a path")
+    axis.set_ylabel("ms from message to answer over LCM" if daemon else "ms of work that brought another path")
     axis.grid(True, which="major", color="#dddddd")
     axis.legend(fontsize=8)
     figure.savefig(path, dpi=90)
