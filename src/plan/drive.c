@@ -579,6 +579,9 @@ static void begin_static(aisle_drive *self) {
 
 // Nothing slower is left: braking if it moves, else it stands and waits.
 static aisle_status give_up(aisle_drive *self, aisle_drive_verdict *verdict) {
+    if (aisle_drive_moves(self) && aisle_drive_is_stopping(self)) { // it brakes already
+        return end(self, AISLE_DRIVE_KEEP, verdict);
+    }
     if (!aisle_drive_moves(self) || self->brakes) {
         self->is_fresh = false;
         return end(self, AISLE_DRIVE_LOST, verdict);

@@ -179,6 +179,7 @@ void aisle_sim_driver_take_path(aisle_sim_driver *self, const aisle_path_msg *pa
     self->has_path = true;
     self->revoked = path->status == AISLE_PATH_STOP;
     self->arriving = false;
+    self->is_fresh = true;
     self->heading = at->pose.theta;
     locate(self, at->pose);
 }
@@ -191,6 +192,20 @@ bool aisle_sim_driver_brakes(const aisle_sim_driver *self, int64_t now_us) {
 
 static bool stands(const aisle_sim_estimate *at) {
     return fabs(at->v) < 5e-3 && fabs(at->omega) < 1e-2;
+}
+
+// It stands on this waypoint, and stays there for the rest of its dwell.
+static void stay(aisle_sim_driver *self, uint32_t waypoint, int64_t now_us) {
+    const aisle_waypoint_msg *w = &self->path.waypoints[waypoint];
+    if ((w->flags & AISLE_WAYPOINT_GOAL) == 0) {
+        return;
+    }
+    if (!self->dwells || self->dwells_on != w->goal_id) {
+        self->dwells = true;
+        self->dwells_on = w->goal_id;
+        self->dwells_since_us = now_us;
+    }
+    self->rest_until_us = self->dwells_since_us + (int64_t)(dwell_at(self, waypoint) * 1e6);
 }
 
 // Begins the piece ahead.
@@ -212,7 +227,7 @@ static void advance(aisle_sim_driver *self, int64_t now_us, const aisle_sim_esti
             if (!self->arriving || !stands(at)) {
                 return;
             }
-            self->rest_until_us = now_us + (int64_t)(dwell_at(self, self->piece) * 1e6);
+            stay(self, self->piece, now_us);
         }
         self->arriving = false;
         self->piece++;
@@ -271,6 +286,14 @@ static aisle_sim_command drive(aisle_sim_driver *self, const aisle_sim_estimate 
 }
 
 aisle_sim_command aisle_sim_driver_step(aisle_sim_driver *self, int64_t now_us, const aisle_sim_estimate *at) {
+    self->dwells = self->dwells && stands(at);
+    if (self->has_path && self->is_fresh) {
+        self->is_fresh = false;
+        self->rest_until_us = now_us;
+        if (self->piece == 1U && stands(at)) {
+            stay(self, 0, now_us);
+        }
+    }
     if (!self->has_path || self->piece >= count_of(self)) {
         return (aisle_sim_command){0};
     }

@@ -8,6 +8,8 @@
 //     path NONE          brake at once, along what was driven last
 //     lease run out      the same, until it is renewed
 //
+// It stays on a goal for its dwell, counted by its own clock from when it stood there, whatever paths come meanwhile; one that
+// begins on the goal is left when that time is over.
 // Braking means a speed command of 0, which the drives meet with d_max. Of two paths of one boot the one of the higher
 // revision is newer; the same revision again renews its lease.
 // Speed: the lesser of the path's at the place and a look ahead of latency and lag; from rest to rest the trapezoid that
@@ -43,6 +45,10 @@ typedef struct aisle_sim_driver {
     double done;    // m or rad of the piece that are behind
     double heading; // rad, of the last estimate, to count turns
     bool arriving;  // at a rest, waiting for the wheels to stand
+    bool is_fresh;  // the path was taken since the last step
+    bool dwells;    // it has stood on the goal of this id since then
+    int32_t dwells_on;
+    int64_t dwells_since_us;
     double lateral; // m, error at the last step, left of the path
     aisle_goal_msg goals[AISLE_GOAL_LIST_MAX_GOALS];
     int16_t num_goals;
