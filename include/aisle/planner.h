@@ -66,6 +66,7 @@ extern "C" {
 #define AISLE_PROTOCOL 1                           // status_msg.protocol
 #define AISLE_LEASE_US 1000000                     // a path is valid so long after each sending at most
 #define AISLE_LEASE_RESEND_US (AISLE_LEASE_US / 2) // and sent again so often; sooner where the lease is shorter
+#define AISLE_LEASE_SHORTEST 0.125F                // s, a path that is safe for less is not sent
 #define AISLE_WORK_UNITS_DEFAULT 5000000
 #define AISLE_PLANNER_ALIGN 64 // bytes, of the block
 
@@ -80,6 +81,9 @@ typedef struct aisle_config {
     bool has_vehicle;
     bool skip_unreachable; // goals of a list that are proved to be out of reach (NO_PATH, TOO_NARROW, GOAL_OCCUPIED,
                            // GOAL_OUTSIDE), if others are not
+    float
+        shortest_lease; // s, [0.05, 1]; 0 = AISLE_LEASE_SHORTEST. Less is quicker among moving obstacles, but a vehicle that
+                        // hears of a renewal later than half of it brakes in between
     bool
         forgetful; // remember no answers: every request is planned anew (for benches; the memory is there all the same)
 } aisle_config;

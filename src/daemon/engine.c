@@ -27,6 +27,7 @@ aisle_status aisle_engine_start(aisle_engine *self, const aisle_settings *settin
                            .vehicle = settings->vehicle,
                            .has_vehicle = true,
                            .skip_unreachable = settings->skip_unreachable,
+                           .shortest_lease = settings->shortest_lease,
                            .forgetful = !settings->remember};
     self->planner_bytes = aisle_planner_memsize(&config.limits);
     self->extra_bytes = extra;

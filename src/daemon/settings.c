@@ -39,6 +39,7 @@ static const key keys[] = {
     {"planner", "work_units_per_slice", AT(work_units_per_slice), 0, 1000000, " (0 = chosen)", KIND_WHOLE, false},
     {"planner", "remember", AT(remember), 0, 0, "", KIND_BOOL, false},
     {"planner", "skip_unreachable", AT(skip_unreachable), 0, 0, "", KIND_BOOL, false},
+    {"planner", "shortest_lease", AT(shortest_lease), 0.05, 1, " s", KIND_FLOAT, true},
     LIMIT(cells, 4096, AISLE_LIMITS_CELLS_MAX),
     LIMIT(polygons, 1, 4096),
     LIMIT(vertices, 3, 65536),

@@ -26,6 +26,7 @@ typedef struct aisle_settings {
     uint32_t work_units_per_slice;              // 0 = as many as take about 1 ms, measured as it goes
     bool remember;                              // answers: else every request is planned anew
     bool skip_unreachable;                      // goals of a list that are proved to be out of reach, if others are not
+    float shortest_lease;                       // s, of a path among moving obstacles; 0 = AISLE_LEASE_SHORTEST
     aisle_limits limits;                        // 0 = default, as in limits.h
     aisle_vehicle_msg vehicle;                  // the vehicle until a message brings one
     float status_hz, diag_hz;

@@ -8,16 +8,14 @@
 #include <stddef.h>
 #include <string.h>
 
-#define RESTING 0.01    // rad/s: a slower turn is rest
-#define STILL 0.05      // m/s, rad/s: faster a vehicle without a path is not sent off
-#define BACK 0.3        // m, how far behind its last place the vehicle may be found
-#define AHEAD 0.5       // m, and ahead of where it could have got to
-#define AGE_MAX 0.3     // s, a pose is moved on by at most
-#define LEASE_LEAST 0.2 // s
-#define START_LEASE 0.5 // s, AISLE_DRIVE_PACE_LEASE of a vehicle at rest: no creeping up to what it waits for
-#define JOINT 1e-6      // m, two ways that meet are apart by at most
-#define APART 2e-3      // m, from a waypoint to where a path is left
-#define SNAP 2e-6       // m, shorter stretches are none
+#define RESTING 0.01 // rad/s: a slower turn is rest
+#define STILL 0.05   // m/s, rad/s: faster a vehicle without a path is not sent off
+#define BACK 0.3     // m, how far behind its last place the vehicle may be found
+#define AHEAD 0.5    // m, and ahead of where it could have got to
+#define AGE_MAX 0.3  // s, a pose is moved on by at most
+#define JOINT 1e-6   // m, two ways that meet are apart by at most
+#define APART 2e-3   // m, from a waypoint to where a path is left
+#define SNAP 2e-6    // m, shorter stretches are none
 
 static double lease_most(void) {
     return (double)AISLE_LEASE_US * 1e-6;
@@ -48,6 +46,7 @@ void aisle_drive_carve(aisle_drive *self, aisle_arena *arena) {
         self->head = (aisle_path_msg *)head;
         self->decoded = (aisle_path_msg *)decoded;
         self->known = (aisle_verify_known *)known;
+        self->shortest_lease = (double)AISLE_LEASE_SHORTEST;
     }
 }
 
@@ -444,7 +443,8 @@ static void begin_pace(aisle_drive *self, uint32_t level) {
                                         .base = moves ? &self->base : NULL,
                                         .now_us = self->cycle_us,
                                         .late = lateness(self),
-                                        .lease = moves ? AISLE_DRIVE_PACE_LEASE : START_LEASE,
+                                        .lease = self->shortest_lease *
+                                                 (moves ? AISLE_DRIVE_PACE_LEASE : AISLE_DRIVE_START_LEASE),
                                         .first = level,
                                         .current = present_level(self),
                                         .enough = enough(self, level)};
@@ -480,7 +480,7 @@ static aisle_status prove_moving(aisle_drive *self, aisle_drive_path *path, uint
         return st;
     }
     self->lease *= 0.5;
-    if (self->lease < LEASE_LEAST) {
+    if (self->lease < self->shortest_lease) {
         self->why = (aisle_refusal){AISLE_STATUS_YIELDING, self->moving.blocker, 0.0F};
         return AISLE_ERR_DATA;
     }

@@ -8,7 +8,8 @@
 // A cycle, for each new pose or obstacle snapshot, asks in this order:
 //     FRESH   a plan that begins where the vehicle stands, as it was proved: may it be leased? (Not if another revision was
 //             sent since it was begun: then its bytes are made anew.)
-//     CHECK   may what is out go on, for 1, 1/2, 1/4 of AISLE_LEASE_US? If it was slowed: would a faster one do?
+//     CHECK   may what is out go on, for AISLE_LEASE_US, half of that and so on to the shortest lease? If it was slowed: would
+//             a faster one do?
 //     PACE    the plan from here on at the fastest level that is safe (pace.h), the last one a stop
 //     MOVING, STATIC  its proofs. A level that fails gives way to the next slower one; braking needs the static one alone
 // and ends with a verdict. Hysteresis: what may go on is not touched but for the better, and then at most every
@@ -34,8 +35,9 @@
 #include "robot/motion.h"
 #include "world/movers.h"
 
-#define AISLE_DRIVE_SPEED_UP_US 300000
-#define AISLE_DRIVE_PACE_LEASE 0.35 // s, that new speeds are chosen to be safe for: so they stay so for a while
+#define AISLE_DRIVE_SPEED_UP_US 150000
+#define AISLE_DRIVE_PACE_LEASE 1.3  // shortest leases; new speeds are safe for so long, to stay so for a while
+#define AISLE_DRIVE_START_LEASE 1.6 // the same of a vehicle at rest: no creeping up to what it waits for
 #define AISLE_DRIVE_OFF 0.05        // m
 #define AISLE_DRIVE_OFF_HEADING 0.2 // rad
 
@@ -89,6 +91,8 @@ typedef struct aisle_drive {
     aisle_off off;              // from the path, by the last pose
     bool is_off, is_resting;    // by the last pose
     aisle_refusal why;          // what slows what is out or stops it; cause 0: nothing
+
+    double shortest_lease; // s, a path is sent for no less; AISLE_LEASE_SHORTEST after carve()
 
     // of the cycle
     aisle_drive_stage stage;

@@ -114,7 +114,9 @@ aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *c
     size_t need = aisle_planner_memsize(&config->limits);
     aisle_vehicle vehicle = {0};
     aisle_refusal why;
-    if (need == 0U || config->work_units < 0 ||
+    const float lease = config->shortest_lease;
+    const bool has_lease = lease >= 0.05F && lease <= 1.0F, has_default = lease >= 0.0F && lease <= 0.0F;
+    if (need == 0U || config->work_units < 0 || !(has_lease || has_default) ||
         (config->has_vehicle && aisle_vehicle_from_msg(&config->vehicle, &vehicle, &why) != AISLE_OK)) {
         return AISLE_ERR_ARG;
     }
@@ -132,6 +134,7 @@ aisle_status aisle_planner_init(void *memory, size_t size, const aisle_config *c
     self->vehicle = vehicle;
     *self->vehicle_msg = config->vehicle;
     self->route->forgetful = config->forgetful;
+    self->drive.shortest_lease = (double)(has_lease ? lease : AISLE_LEASE_SHORTEST);
     self->route->budget_default = config->work_units > 0 ? (uint32_t)config->work_units : AISLE_WORK_UNITS_DEFAULT;
     *planner = self;
     return AISLE_OK;

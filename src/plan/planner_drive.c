@@ -222,7 +222,7 @@ static void begin_weighing(aisle_planner *self, aisle_weighing what, const aisle
                                                 .until = aisle_drive_next_goal(w, n),
                                                 .now_us = self->now_us,
                                                 .late = self->vehicle.reaction_time,
-                                                .lease = AISLE_DRIVE_PACE_LEASE};
+                                                .lease = AISLE_DRIVE_PACE_LEASE * self->drive.shortest_lease};
     aisle_pace_predict_start(&self->predict, &request);
     self->weighing = what;
 }
