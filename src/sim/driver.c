@@ -290,8 +290,8 @@ aisle_sim_command aisle_sim_driver_step(aisle_sim_driver *self, int64_t now_us, 
     if (self->has_path && self->is_fresh) {
         self->is_fresh = false;
         self->rest_until_us = now_us;
-        if (self->piece == 1U && stands(at)) {
-            stay(self, 0, now_us);
+        if (stands(at) && (self->piece == 1U || self->dwells)) { // by its own estimate the goal may be a little behind
+            stay(self, self->piece - 1U, now_us);
         }
     }
     if (!self->has_path || self->piece >= count_of(self)) {

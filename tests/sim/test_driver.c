@@ -235,6 +235,145 @@ static void test_it_stays_at_a_goal_for_its_dwell(void) {
     expect_at(4.0, 0.0, 0.01);
 }
 
+// ---- dwells among paths that come meanwhile: told by (2, 0), on to (4, 0)
+
+static void take_orders(void) {
+    const aisle_goal_list_msg list = {.num_goals = 2, .goals = {{.id = 7, .dwell = 3.0F}, {.id = 8, .dwell = 2.0F}}};
+    aisle_sim_driver_take_goals(&driver, &list);
+}
+
+// From (x, 0) to the goal `id` at (2, 0), if it is not there, and on.
+static void make_path(double x, int32_t id) {
+    const float dwell[] = {id == 7 ? 3.0F : 2.0F, 0.0F, 0.0F};
+    memset(&path, 0, sizeof path);
+    curve.n = 0;
+    aisle_curve_begin(&curve, (aisle_pose2){x, 0.0, 0.0});
+    aisle_curve_line_to(&curve, aisle_vec2_of(2.0, 0.0));
+    aisle_curve_goal(&curve, id);
+    const uint32_t before = curve.n - 1U;
+    aisle_curve_line_to(&curve, aisle_vec2_of(4.0, 0.0));
+    TEST_ASSERT_EQUAL_UINT32(before + 2U, curve.n);
+    TEST_ASSERT_TRUE((path.waypoints[before].flags & AISLE_WAYPOINT_GOAL) != 0);
+    const float on_the_way[] = {0.0F, dwell[0], 0.0F};
+    finish(before == 0U ? dwell : on_the_way);
+}
+
+// Drives until the wheels stand on the goal.
+static void come_to_the_goal(void) {
+    take_orders();
+    make_path(0.0, 7);
+    give(1, AISLE_PATH_OK, 100.0);
+    for (int i = 0; i < 1000 && !(chassis.pose.x > 1.98 && chassis.v <= 0.0); i++) {
+        run(0.01);
+    }
+    expect_at(2.0, 0.0, 0.02);
+}
+
+// Seconds until the wheels turn again, at most 6.
+static double until_it_leaves(void) {
+    double seconds = 0.0;
+    while (seconds < 6.0 && chassis.v <= 0.0) {
+        run(0.01);
+        seconds += 0.01;
+    }
+    return seconds;
+}
+
+static const double soon =
+    0.15; // s, from a command to wheels that turn, and from wheels that stand to the estimate's count
+
+static void test_a_path_that_begins_on_the_goal_is_left_when_the_dwell_is_over(void) {
+    for (int i = 1; i < 4; i++) { // after 0.7, 1.4 and 2.1 s of it
+        start_at((aisle_pose2){0.0, 0.0, 0.0});
+        come_to_the_goal();
+        run(0.7 * i);
+        make_path(2.0, 7);
+        give(2, AISLE_PATH_OK, 100.0);
+        TEST_ASSERT_DOUBLE_WITHIN(soon, 3.0 - 0.7 * i, until_it_leaves());
+        run(12.0);
+        expect_at(4.0, 0.0, 0.01);
+    }
+}
+
+static void test_one_that_comes_when_the_dwell_is_over_is_left_at_once(void) {
+    come_to_the_goal();
+    run(1.0);
+    give(2, AISLE_PATH_NONE, 100.0);
+    run(4.0);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, chassis.v);
+    make_path(2.0, 7);
+    give(3, AISLE_PATH_OK, 100.0);
+    TEST_ASSERT_DOUBLE_WITHIN(soon, 0.0, until_it_leaves());
+}
+
+static void test_many_paths_and_none_do_not_begin_a_dwell_anew(void) {
+    come_to_the_goal();
+    for (int32_t revision = 2; revision <= 22; revision += 2) { // 2.2 s
+        give(revision, AISLE_PATH_NONE, 100.0);
+        run(0.1);
+        make_path(2.0, 7);
+        give(revision + 1, AISLE_PATH_OK, 0.5);
+        run(0.05);
+        give(revision + 1, AISLE_PATH_OK, 100.0); // renewed
+        run(0.05);
+    }
+    TEST_ASSERT_EQUAL_INT64(11, driver.renewed);
+    TEST_ASSERT_DOUBLE_WITHIN(soon, 0.8, until_it_leaves());
+}
+
+static void test_a_dwell_goes_on_on_a_path_that_does_not_quite_begin_on_the_goal(void) {
+    for (int i = -3; i <= 3; i++) { // the goal is so many mm ahead of where it stands, or behind
+        start_at((aisle_pose2){0.0, 0.0, 0.0});
+        come_to_the_goal();
+        run(1.0);
+        chassis.pose.x = 2.0 - 1e-3 * i;
+        make_path(1.997, 7);
+        give(2, AISLE_PATH_OK, 100.0);
+        TEST_ASSERT_DOUBLE_WITHIN(soon, 2.0, until_it_leaves());
+    }
+}
+
+static void test_one_that_starts_on_a_goal_stays_there_for_its_dwell(void) {
+    start_at((aisle_pose2){2.0, 0.0, 0.0});
+    take_orders();
+    make_path(2.0, 7);
+    give(1, AISLE_PATH_OK, 100.0);
+    TEST_ASSERT_DOUBLE_WITHIN(soon, 3.0, until_it_leaves());
+    run(12.0);
+    expect_at(4.0, 0.0, 0.01);
+}
+
+static void test_another_goal_at_the_same_place_has_its_own_dwell(void) {
+    come_to_the_goal();
+    run(2.0);
+    make_path(2.0, 8);
+    give(2, AISLE_PATH_OK, 100.0);
+    TEST_ASSERT_DOUBLE_WITHIN(soon, 2.0, until_it_leaves());
+}
+
+static void test_a_goal_that_was_left_and_come_back_to_is_stayed_on_anew(void) {
+    come_to_the_goal();
+    run(1.0);
+    chassis.v = 0.2; // pushed
+    run(0.5);
+    give(2, AISLE_PATH_NONE, 100.0);
+    run(1.0);
+    chassis.pose.x = 2.0;
+    make_path(2.0, 7);
+    give(3, AISLE_PATH_OK, 100.0);
+    TEST_ASSERT_DOUBLE_WITHIN(soon, 3.0, until_it_leaves());
+}
+
+static void test_a_path_without_the_goal_is_left_at_once_though_the_dwell_is_not_over(void) {
+    come_to_the_goal();
+    run(1.0);
+    make_path(2.0, 7);
+    path.waypoints[0].flags = 0; // the planner has counted it as reached, or was told to skip it
+    finish(NULL);
+    give(2, AISLE_PATH_OK, 100.0);
+    TEST_ASSERT_DOUBLE_WITHIN(soon, 0.0, until_it_leaves());
+}
+
 static void test_a_new_path_from_the_present_place_is_taken_up_in_motion(void) {
     line_path();
     give(1, AISLE_PATH_OK, 100.0);
@@ -287,6 +426,14 @@ int main(void) {
     RUN_TEST(test_backwards_and_forwards_with_a_cusp);
     RUN_TEST(test_a_backward_arc_is_kept_to);
     RUN_TEST(test_it_stays_at_a_goal_for_its_dwell);
+    RUN_TEST(test_a_path_that_begins_on_the_goal_is_left_when_the_dwell_is_over);
+    RUN_TEST(test_one_that_comes_when_the_dwell_is_over_is_left_at_once);
+    RUN_TEST(test_many_paths_and_none_do_not_begin_a_dwell_anew);
+    RUN_TEST(test_a_dwell_goes_on_on_a_path_that_does_not_quite_begin_on_the_goal);
+    RUN_TEST(test_one_that_starts_on_a_goal_stays_there_for_its_dwell);
+    RUN_TEST(test_another_goal_at_the_same_place_has_its_own_dwell);
+    RUN_TEST(test_a_goal_that_was_left_and_come_back_to_is_stayed_on_anew);
+    RUN_TEST(test_a_path_without_the_goal_is_left_at_once_though_the_dwell_is_not_over);
     RUN_TEST(test_a_new_path_from_the_present_place_is_taken_up_in_motion);
     RUN_TEST(test_without_any_path_it_stands);
     RUN_TEST(test_an_offset_is_steered_away_without_swinging);
