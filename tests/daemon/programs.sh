@@ -32,6 +32,15 @@ expect 2 "$aisled" --prefix 'a b' && says err 'prefix' && one_line
 expect 2 "$aisled" --config && says err 'missing' && one_line
 expect 0 "$aisled" --check-config && says out 'defaults: good'
 expect 0 "$aisled" --check-config --config "$packaging/aisled.ini" && says out 'good'
+for section in bus planner limits vehicle daemon; do # the example names every setting that there is
+    printf '[%s]\nno = 1\n' $section >"$work/no.ini"
+    expect 2 "$aisled" --check-config --config "$work/no.ini"
+    keys=$(sed -n 's/.*; allowed: //p' "$work/err" | tr -d ',')
+    [ -n "$keys" ] || fail "no keys in [$section]"
+    for key in $keys; do
+        sed "1,/^\[$section\]/d; /^\[/,\$d" "$packaging/aisled.ini" | grep -q "^;* *$key =" || fail "no $key in aisled.ini"
+    done
+done
 printf '[bus]\nprefix = OK\n[limits]\ncells = many\n' >"$work/bad.ini"
 expect 2 "$aisled" --check-config --config "$work/bad.ini" && one_line
 says err "^$work/bad.ini:4: .*allowed: 4096 to 16777216"

@@ -20,6 +20,7 @@ void tearDown(void) {
 static void test_block_is_aligned_and_settings_reach_the_planner(void) {
     settings.limits.cells = 5000;
     settings.work_units = 1234;
+    settings.shortest_lease = 0.375F;
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_engine_start(&engine, &settings, 99, 1000, message));
     TEST_ASSERT_EQUAL(0, (uintptr_t)engine.block % 64U);
     TEST_ASSERT_EQUAL(0, (uintptr_t)engine.extra % 64U);
@@ -28,6 +29,7 @@ static void test_block_is_aligned_and_settings_reach_the_planner(void) {
     TEST_ASSERT_EQUAL_INT64(99, fake.config.boot_id);
     TEST_ASSERT_EQUAL_UINT32(5000, fake.config.limits.cells);
     TEST_ASSERT_EQUAL_INT32(1234, fake.config.work_units);
+    TEST_ASSERT_EQUAL_FLOAT(0.375F, fake.config.shortest_lease);
     TEST_ASSERT_TRUE(fake.config.has_vehicle);
     TEST_ASSERT_EQUAL_MEMORY(&settings.vehicle, &fake.config.vehicle, sizeof settings.vehicle);
 }

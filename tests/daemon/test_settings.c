@@ -58,6 +58,7 @@ static void test_defaults_are_those_of_the_documents(void) {
     TEST_ASSERT_FALSE(settings.mlock);
     TEST_ASSERT_TRUE(settings.remember);
     TEST_ASSERT_FALSE(settings.skip_unreachable);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, settings.shortest_lease); // the planner's own
     TEST_ASSERT_EQUAL_INT32(AISLE_WORK_UNITS_DEFAULT, settings.work_units);
     TEST_ASSERT_EQUAL_UINT32(0, settings.limits.cells);
     TEST_ASSERT_EQUAL_INT16(4, settings.vehicle.num_vertices);
@@ -75,7 +76,7 @@ static void test_empty_file_changes_nothing(void) {
 static void test_every_key_is_read(void) {
     const char *text = "; comment\n# comment\n[bus]\nurl = udpm://239.255.76.67:7667?ttl=1 ; across hosts\nprefix=V_7\n"
                        "queue_bytes = 300000\n[planner]\nwork_units = 5000\nwork_units_per_slice = 77\nremember = no\n"
-                       "skip_unreachable = yes\n"
+                       "skip_unreachable = yes\nshortest_lease = 0.375\n"
                        "[limits]\ncells=10000\npolygons=10\nvertices=100\nopen_nodes=2048\nrequests=3\ncached_paths=7\n"
                        "[daemon]\nstatus_hz = 10\ndiag_hz = 0.5\nmlock = yes\n"
                        "[vehicle]\nvehicle_revision = 9\ndrive = tricycle\n";
@@ -93,6 +94,7 @@ static void test_every_key_is_read(void) {
     TEST_ASSERT_EQUAL_UINT32(7, settings.limits.cached_paths);
     TEST_ASSERT_FALSE(settings.remember);
     TEST_ASSERT_TRUE(settings.skip_unreachable);
+    TEST_ASSERT_EQUAL_FLOAT(0.375F, settings.shortest_lease);
     TEST_ASSERT_EQUAL_FLOAT(10.0F, settings.status_hz);
     TEST_ASSERT_EQUAL_FLOAT(0.5F, settings.diag_hz);
     TEST_ASSERT_TRUE(settings.mlock);
@@ -182,6 +184,23 @@ static void test_numbers_out_of_range_are_refused_and_the_ends_are_taken(void) {
     TEST_ASSERT_EQUAL(AISLE_OK, read_text("[limits]\ncells = 16777216\nrequests = 64\n[daemon]\nstatus_hz = 50\n"));
     TEST_ASSERT_EQUAL_UINT32(16777216, settings.limits.cells);
 }
+static void test_the_shortest_lease_is_any_that_the_planner_takes(void) {
+    static const char *const bad[] = {"0.0499", "1.01", "-0.125"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        char text[64];
+        (void)snprintf(text, sizeof text, "[planner]\nshortest_lease = %s\n", bad[i]);
+        expect_refusal(text, 2, "out of range; allowed: 0.05 to 1 s, or 0 for the default");
+    }
+    expect_refusal("[planner]\nshortest_lease = nan\n", 2, "is not a number");
+    expect_refusal("[daemon]\nshortest_lease = 0.5\n", 2, "unknown key \"shortest_lease\" in [daemon]");
+    TEST_ASSERT_EQUAL_MESSAGE(AISLE_OK, read_text("[planner]\nshortest_lease = 0.05\n"), message);
+    TEST_ASSERT_TRUE(settings.shortest_lease >= 0.05F); // what the planner compares it with
+    TEST_ASSERT_EQUAL_MESSAGE(AISLE_OK, read_text("[planner]\nshortest_lease = 1\n"), message);
+    TEST_ASSERT_TRUE(settings.shortest_lease <= 1.0F);
+    aisle_settings_defaults(&settings);
+    TEST_ASSERT_EQUAL_MESSAGE(AISLE_OK, read_text("[planner]\nshortest_lease = 0\n"), message);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, settings.shortest_lease);
+}
 static void test_words_other_than_the_allowed_ones_are_refused(void) {
     expect_refusal("[daemon]\nmlock = maybe\n", 2, "neither yes nor no");
     expect_refusal("[vehicle]\ndrive = tank\n", 2, "allowed: differential, tricycle, omni");
@@ -262,6 +281,7 @@ int main(void) {
     RUN_TEST(test_duplicate_keys_are_told_with_both_lines);
     RUN_TEST(test_text_where_a_number_belongs_is_refused);
     RUN_TEST(test_numbers_out_of_range_are_refused_and_the_ends_are_taken);
+    RUN_TEST(test_the_shortest_lease_is_any_that_the_planner_takes);
     RUN_TEST(test_words_other_than_the_allowed_ones_are_refused);
     RUN_TEST(test_footprints_that_are_not_convex_outlines_are_refused);
     RUN_TEST(test_indented_key_does_not_go_unnoticed);

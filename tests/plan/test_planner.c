@@ -112,6 +112,24 @@ static void test_init_refuses_what_breaks_its_rules(void) {
     TEST_ASSERT_NULL(none);
 }
 
+static void test_the_shortest_lease_is_within_its_bounds_or_zero(void) {
+    unsigned char *at = door_block[1] + (64U - (uintptr_t)door_block[1] % 64U) % 64U;
+    const size_t size = sizeof door_block[1] - 64U;
+    static const float bad[] = {0.0499F, 1.0001F, -0.125F, -1e-9F, 1e-9F, NAN, INFINITY, -INFINITY};
+    static const float good[] = {0.0F, -0.0F, 0.05F, 0.125F, 0.3F, 1.0F};
+    aisle_config config = door_config;
+    aisle_planner *planner = NULL;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        config.shortest_lease = bad[i];
+        TEST_ASSERT_EQUAL(AISLE_ERR_ARG, aisle_planner_init(at, size, &config, &planner));
+        TEST_ASSERT_NULL(planner);
+    }
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        config.shortest_lease = good[i];
+        TEST_ASSERT_EQUAL(AISLE_OK, aisle_planner_init(at, size, &config, &planner));
+    }
+}
+
 static void test_memory_rows_sum_up_to_memsize(void) {
     aisle_memory_row rows[32];
     size_t n = aisle_planner_memory(door, rows, 32);
@@ -1410,6 +1428,7 @@ int main(void) {
     RUN_TEST(test_every_limit_at_its_ends_has_a_size);
     RUN_TEST(test_init_refuses_a_byte_less_and_leaves_the_block_alone);
     RUN_TEST(test_init_refuses_what_breaks_its_rules);
+    RUN_TEST(test_the_shortest_lease_is_within_its_bounds_or_zero);
     RUN_TEST(test_memory_rows_sum_up_to_memsize);
     RUN_TEST(test_a_query_is_answered_by_a_path_that_keeps_the_margin);
     RUN_TEST(test_work_is_counted_as_it_is_spent);
