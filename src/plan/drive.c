@@ -579,7 +579,7 @@ static void begin_static(aisle_drive *self) {
 
 // Nothing slower is left: braking if it moves, else it stands and waits.
 static aisle_status give_up(aisle_drive *self, aisle_drive_verdict *verdict) {
-    if (aisle_drive_moves(self) && aisle_drive_is_stopping(self)) { // it brakes already
+    if (aisle_drive_moves(self) && aisle_drive_is_stopping(self) && !self->must_change) { // it brakes already
         return end(self, AISLE_DRIVE_KEEP, verdict);
     }
     if (!aisle_drive_moves(self) || self->brakes) {

@@ -359,6 +359,51 @@ static void rests_within(int n) {
     TEST_ASSERT_LESS_THAN_INT(n, i);
 }
 
+// Under way at full speed, and a person is there all at once, ahead and a little aside: nothing but braking is proved.
+static void be_taken_by_surprise(void) {
+    open_hall(2.0, 5.0, 0.0);
+    go(1, 18.0, 5.0);
+    ticks(100);
+    TEST_ASSERT_TRUE(here.vx > 1.0F);
+    see(7, here.x + 1.5, 6.0, 0.0, 0.0);
+    tick();
+    is_braking(AISLE_STATUS_YIELDING);
+}
+
+static void test_one_that_brakes_is_told_so_once_and_the_lease_of_that_renewed(void) {
+    be_taken_by_surprise();
+    const int32_t revision = agv.revision;
+    const int paths = door_paths;
+    int n = 0;
+    for (; here.vx > 0.001F; n++) {
+        TEST_ASSERT_LESS_THAN_INT(80, n);
+        TEST_ASSERT_EQUAL_INT32(revision, door_path.path_revision);
+        TEST_ASSERT_EQUAL(AISLE_PATH_STOP, door_path.status);
+        TEST_ASSERT_TRUE(door_now + TICK_US <= agv.path.valid_until_utime);
+        tick();
+    }
+    TEST_ASSERT_GREATER_THAN_INT(20, n);                                                // of 50 ms
+    TEST_ASSERT_TRUE(door_paths - paths >= n / 20 && door_paths - paths <= 2 + n / 10); // each half second
+    for (int i = 0; i < 40; i++) {
+        TEST_ASSERT_TRUE(door_path.status == AISLE_PATH_NONE || door_path.status == AISLE_PATH_OK);
+        tick();
+    }
+}
+
+static void test_one_that_brakes_is_told_anew_when_the_hall_changes(void) {
+    be_taken_by_surprise();
+    for (int32_t map = 2; map < 5; map++) {
+        const int32_t revision = agv.revision;
+        hall_add(15.0, 8.0 - 0.5 * map, 15.2, 8.2 - 0.5 * map);
+        TEST_ASSERT_EQUAL(AISLE_OK, door_layout(map));
+        ticks(3);
+        TEST_ASSERT_TRUE(here.vx > 0.1F);
+        is_braking(AISLE_STATUS_YIELDING);
+        TEST_ASSERT_EQUAL_INT32(map, agv.path.map_revision); // proved in the hall as it is
+        TEST_ASSERT_TRUE(agv.revision <= revision + 2);      // for the hall, and for the plan made anew in it
+    }
+}
+
 static void test_hold_brakes_along_the_path_and_resume_goes_on(void) {
     open_hall(2.0, 5.0, 0.0);
     go(1, 18.0, 5.0);
@@ -621,6 +666,8 @@ int main(void) {
     RUN_TEST(test_nothing_is_sent_to_one_that_has_no_path_and_moves_until_it_rests);
     RUN_TEST(test_a_way_round_is_taken_of_one_who_always_seems_to_be_leaving);
     RUN_TEST(test_a_person_who_blocks_an_aisle_is_driven_round_by_another_one);
+    RUN_TEST(test_one_that_brakes_is_told_so_once_and_the_lease_of_that_renewed);
+    RUN_TEST(test_one_that_brakes_is_told_anew_when_the_hall_changes);
     RUN_TEST(test_hold_brakes_along_the_path_and_resume_goes_on);
     RUN_TEST(test_a_turn_is_braked_though_the_pose_is_behind_the_path_that_is_out);
     RUN_TEST(test_cancel_brakes_along_the_path_and_then_nothing_is_out);
