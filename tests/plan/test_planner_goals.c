@@ -408,7 +408,7 @@ static void test_goals_behind_one_at_the_start_are_kept_when_it_is_reached(void)
     drive(0.5);
     aisle_obstacles_msg seen = {.utime = door_now, .seq = 1, .num_obstacles = 1};
     seen.obstacles[0] =
-        (aisle_obstacle_msg){.id = 7, .kind = AISLE_OBSTACLE_PERSON, .x = 5.6, .y = 1.0, .radius = 0.3F};
+        (aisle_obstacle_msg){.id = 7, .kind = AISLE_OBSTACLE_PERSON, .x = 4.2, .y = 1.0, .radius = 0.3F};
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_OBSTACLES, &seen));
     door_settle(); // slower, by a new path
     TEST_ASSERT_EQUAL(AISLE_STATUS_YIELDING, door_path.cause);
