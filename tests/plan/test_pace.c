@@ -127,28 +127,6 @@ static aisle_pace_request random_request(uint64_t seed, uint32_t how_many) {
     return request;
 }
 
-static void test_levels_that_are_not_wanted_are_found_but_not_made(void) {
-    uint32_t wanted = 0, unwanted = 0;
-    for (uint64_t seed = 0; seed < CASES(300); seed++) {
-        aisle_pace_request request = random_request(seed, 2);
-        const aisle_status st = run(&request, &out);
-        const uint32_t level = pace.level;
-        const aisle_pace_limit limit = pace.limit;
-        const float duration = out.duration;
-        request.enough = 1 + (uint32_t)(seed % 4);
-        out.duration = -1.0F;
-        TEST_ASSERT_EQUAL_INT(st, run(&request, &out));
-        TEST_ASSERT_EQUAL_UINT32(level, pace.level);
-        TEST_ASSERT_EQUAL_INT(limit.is_known, pace.limit.is_known);
-        TEST_ASSERT_EQUAL_INT32(limit.id, pace.limit.id);
-        const bool is_made = level < request.enough || level == AISLE_PACE_STOP;
-        TEST_ASSERT_EQUAL_FLOAT(is_made ? duration : -1.0F, out.duration);
-        wanted += is_made && level < AISLE_PACE_STOP ? 1U : 0U;
-        unwanted += is_made ? 0U : 1U;
-    }
-    TEST_ASSERT_TRUE(wanted > 20U && unwanted > 20U);
-}
-
 static void test_what_it_takes_is_safe_for_2000_of_2000_cases(void) {
     uint32_t levels[AISLE_PACE_LEVELS] = {0}, tight = 0;
     for (uint64_t seed = 0; seed < CASES(2000); seed++) {
@@ -478,8 +456,9 @@ static void test_a_faster_level_than_the_present_one_must_hold_longer(void) {
     uint32_t held_back = 0;
     for (int i = 0; i < 400; i++) {
         movers.count = 0;
-        put_mover(15.0 + 0.02 * i, 0.0, 0.3, 1.0);
+        put_mover(11.0 + 0.02 * i, 0.0, 0.3, 1.0);
         aisle_pace_request request = request_at((aisle_place){10, 0.5}, 0.7);
+        request.lease = 0.2;
         (void)run(&request, &out);
         const uint32_t fresh = pace.level;
         request.current = AISLE_PACE_STOP;
@@ -492,7 +471,7 @@ static void test_a_faster_level_than_the_present_one_must_hold_longer(void) {
         TEST_ASSERT_TRUE(pace.level <= kept); // and what is under way is not taken back by it
     }
     TEST_ASSERT_GREATER_THAN_UINT32(5, held_back);
-    TEST_ASSERT_LESS_THAN_UINT32(300, held_back);
+    TEST_ASSERT_LESS_THAN_UINT32(100, held_back);
 }
 
 static void test_it_names_the_mover_that_slows_it_and_none_if_none_does(void) {
@@ -579,7 +558,6 @@ static void test_without_room_for_a_change_of_speed_it_says_so(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_what_it_takes_is_safe_for_2000_of_2000_cases);
-    RUN_TEST(test_levels_that_are_not_wanted_are_found_but_not_made);
     RUN_TEST(test_it_takes_the_fastest_level_that_brute_force_allows);
     RUN_TEST(test_its_paths_are_proved_at_every_level);
     RUN_TEST(test_what_it_takes_is_proved_for_1500_of_1500_cases);
