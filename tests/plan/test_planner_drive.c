@@ -30,7 +30,8 @@ static void setup_hall(double w, double h) {
     TEST_ASSERT_EQUAL(AISLE_OK, aisle_vehicle_from_msg(&msg, &limits, &why));
 }
 
-static double nearest_told; // m, clearance_moving_min of all paths; 1e9: none was told
+static double nearest_told;   // m, clearance_moving_min of all paths; 1e9: none was told
+static int64_t shortest_told; // us, lease of all paths that were to be driven
 
 static void open_hall(double x, double y, double theta) {
     door_open(0);
@@ -39,6 +40,7 @@ static void open_hall(double x, double y, double theta) {
     memset(&agv, 0, sizeof agv);
     memset(&seen, 0, sizeof seen);
     nearest_told = 1e9;
+    shortest_told = INT64_MAX;
     here = door_pose(x, y, theta);
     TEST_ASSERT_EQUAL(AISLE_OK, door_submit(AISLE_INPUT_POSE, &here));
 }
@@ -60,6 +62,10 @@ static void take_path(void) {
         agv.t = 0.0;
     }
     agv.path.valid_until_utime = door_path.valid_until_utime;
+    const int64_t lease = door_path.valid_until_utime - door_path.utime;
+    if (door_path.status == AISLE_PATH_OK || door_path.status == AISLE_PATH_PARTIAL) {
+        shortest_told = lease < shortest_told ? lease : shortest_told;
+    }
     if (door_path.clearance_moving_min > 0.0F) {
         nearest_told = fmin(nearest_told, (double)door_path.clearance_moving_min);
     }
@@ -193,6 +199,34 @@ static void test_a_person_in_the_way_stops_the_vehicle_until_it_leaves(void) {
     TEST_ASSERT_EQUAL_INT32(7, status_now().cause_id);
     seen.num_obstacles = 0;
     TEST_ASSERT_TRUE(drive_to(18.0, 1.5, 600) > 0);
+}
+
+// Up to a person who stands in the way, by leases no shorter than that; where it waits, m from the person.
+static double wait_before_a_person(float shortest_lease) {
+    setup_hall(20.0, 3.0);
+    door_config.shortest_lease = shortest_lease;
+    open_hall(2.0, 1.5, 0.0);
+    see(7, 12.0, 1.5, 0.0, 0.0);
+    go(1, 18.0, 1.5);
+    TEST_ASSERT_EQUAL_INT(-1, drive_to(18.0, 1.5, 600));
+    TEST_ASSERT_TRUE(here.vx < 0.01F);
+    return 12.0 - here.x;
+}
+
+static void test_no_lease_is_shorter_than_the_shortest_and_who_takes_short_ones_comes_nearer(void) {
+    static const float leases[] = {0.05F, 0.125F, 0.3F, 0.5F, 1.0F};
+    double nearer = 0.0;
+    for (size_t i = 0; i < sizeof leases / sizeof leases[0]; i++) {
+        const double gap = wait_before_a_person(leases[i]);
+        const double least = 1e6 * (double)leases[i];
+        TEST_ASSERT_TRUE((double)shortest_told >= least - 1.0);
+        TEST_ASSERT_TRUE((double)shortest_told < fmin(2.0 * least, 1e6) + 1.0); // and it makes use of short ones
+        TEST_ASSERT_TRUE(gap > nearer);
+        nearer = gap;
+    }
+    const double usual = wait_before_a_person(0.125F);
+    TEST_ASSERT_EQUAL_DOUBLE(usual, wait_before_a_person(0.0F));
+    TEST_ASSERT_TRUE(shortest_told >= 125000 && shortest_told < 250000);
 }
 
 static void test_at_rest_it_is_told_once_that_it_yields_whoever_is_nearest(void) {
@@ -659,6 +693,7 @@ int main(void) {
     RUN_TEST(test_a_person_far_away_changes_nothing);
     RUN_TEST(test_poses_and_obstacles_are_counted_for_cycles_while_there_is_a_plan);
     RUN_TEST(test_a_person_in_the_way_stops_the_vehicle_until_it_leaves);
+    RUN_TEST(test_no_lease_is_shorter_than_the_shortest_and_who_takes_short_ones_comes_nearer);
     RUN_TEST(test_at_rest_it_is_told_once_that_it_yields_whoever_is_nearest);
     RUN_TEST(test_a_way_round_that_is_none_is_looked_for_ever_more_rarely);
     RUN_TEST(test_a_person_who_stays_is_driven_round_where_there_is_room);
