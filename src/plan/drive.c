@@ -473,17 +473,17 @@ static aisle_status step_check(aisle_drive *self, aisle_drive_verdict *verdict) 
     return AISLE_BUSY;
 }
 
-// The proof of a path for a lease; where it fails for half of it, and so on. AISLE_ERR_DATA: for none.
+// The proof of a path for a lease; where it fails for half of it, and so on to the shortest. AISLE_ERR_DATA: for none.
 static aisle_status prove_moving(aisle_drive *self, aisle_drive_path *path, uint32_t units) {
     const aisle_status st = aisle_verify_moving_step(&self->moving, units, &self->spent, &path->moving);
     if (st != AISLE_ERR_DATA) {
         return st;
     }
-    self->lease *= 0.5;
-    if (self->lease < self->shortest_lease) {
+    if (self->lease <= self->shortest_lease) {
         self->why = (aisle_refusal){AISLE_STATUS_YIELDING, self->moving.blocker, 0.0F};
         return AISLE_ERR_DATA;
     }
+    self->lease = aisle_max(0.5 * self->lease, self->shortest_lease);
     begin_moving(self, path, self->stage);
     return AISLE_BUSY;
 }

@@ -285,8 +285,15 @@ static aisle_sim_command drive(aisle_sim_driver *self, const aisle_sim_estimate 
     return out;
 }
 
+static void count_lapse(aisle_sim_driver *self, int64_t now_us, const aisle_sim_estimate *at) {
+    const bool is_over = self->has_path && !self->revoked && now_us > self->valid_until_us && !stands(at);
+    self->lapses += is_over && !self->has_lapsed ? 1 : 0;
+    self->has_lapsed = is_over;
+}
+
 aisle_sim_command aisle_sim_driver_step(aisle_sim_driver *self, int64_t now_us, const aisle_sim_estimate *at) {
     self->dwells = self->dwells && stands(at);
+    count_lapse(self, now_us, at);
     if (self->has_path && self->is_fresh) {
         self->is_fresh = false;
         self->rest_until_us = now_us;

@@ -53,6 +53,8 @@ typedef struct aisle_sim_driver {
     aisle_goal_msg goals[AISLE_GOAL_LIST_MAX_GOALS];
     int16_t num_goals;
     int64_t adopted, renewed, ignored; // paths
+    int64_t lapses;                    // of a lease, while it moved: it braked until it heard more
+    bool has_lapsed;
 } aisle_sim_driver;
 
 // vehicle: as long as the driver.

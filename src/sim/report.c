@@ -68,8 +68,10 @@ static void text_of_gap(const char *name, double gap, FILE *out) {
 }
 
 static void text_of_paths(const aisle_sim_episode *e, FILE *out) {
-    (void)fprintf(out, "paths: revisions %" PRId64 ", renewals %" PRId64 ", unplanned stops %" PRId64 ";", e->revisions,
-                  e->renewals, e->stops);
+    (void)fprintf(out,
+                  "paths: revisions %" PRId64 ", renewals %" PRId64 ", lapses of the lease %" PRId64
+                  ", unplanned stops %" PRId64 ";",
+                  e->revisions, e->renewals, e->driver.lapses, e->stops);
     for (uint32_t i = 0; i < e->num_causes; i++) {
         const aisle_sim_cause *c = &e->cause[i];
         (void)fprintf(out, " %s%s%s %" PRId64, aisle_report_path_status(c->status), c->cause == 0 ? "" : "/",
@@ -188,8 +190,9 @@ void aisle_sim_report_json(const aisle_sim_episode *e, FILE *out) {
     json_number("separation", judge->separation, out);
     json_number("separation_moving", judge->separation_moving, out);
     json_number("hall_gap", judge->static_gap, out);
-    (void)fprintf(out, ",\n  \"revisions\": %" PRId64 ", \"renewals\": %" PRId64 ", \"stops\": %" PRId64, e->revisions,
-                  e->renewals, e->stops);
+    (void)fprintf(
+        out, ",\n  \"revisions\": %" PRId64 ", \"renewals\": %" PRId64 ", \"lapses\": %" PRId64 ", \"stops\": %" PRId64,
+        e->revisions, e->renewals, e->driver.lapses, e->stops);
     json_of_causes(e, out);
     json_of_contacts(judge, out);
     json_of_faults(e, out);

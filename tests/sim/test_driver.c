@@ -117,6 +117,7 @@ static void test_without_a_lease_it_stops_within_the_way_braking_takes(void) {
     TEST_ASSERT_TRUE(chassis.pose.x - x >= v * v / (2.0 * vehicle.d_max));
     give(1, AISLE_PATH_OK, 100.0); // renewed: it goes on
     TEST_ASSERT_EQUAL_INT64(1, driver.renewed);
+    TEST_ASSERT_EQUAL_INT64(1, driver.lapses);
     run(20.0);
     expect_at(10.0, 0.0, 0.01);
 }
