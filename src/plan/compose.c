@@ -377,8 +377,10 @@ static aisle_status finish(aisle_compose *self) {
     const aisle_space *space = self->request.space;
     aisle_goal_dwells(path->waypoints, (uint32_t)path->num_waypoints, self->request.goals, self->request.leg_count,
                       self->dwell);
-    aisle_profile_path way = {path->waypoints,          self->dwell, (uint32_t)path->num_waypoints,
-                              AISLE_PATH_MAX_WAYPOINTS, 0,           0};
+    aisle_profile_path way = {.w = path->waypoints,
+                              .dwell = self->dwell,
+                              .n = (uint32_t)path->num_waypoints,
+                              .capacity = AISLE_PATH_MAX_WAYPOINTS};
     static const aisle_profile_start at_rest = {0.0, NULL};
     aisle_profile_sum sum;
     aisle_status st = aisle_profile_fill_ramps(space->vehicle, space->layout, &way, &at_rest, &sum);

@@ -129,24 +129,28 @@ static aisle_place next_goal(const aisle_drive_path *path) {
     return (aisle_place){i, i > 0U ? 1.0 : 0.0};
 }
 
-// The place of `pose` on a path, no farther than the next goal.
-static aisle_place find(const aisle_drive_path *path, double ahead, aisle_pose2 pose, aisle_off *off) {
-    const aisle_place found =
-        aisle_motion_project(path->msg->waypoints, count_of(path), path->at, BACK, ahead, pose, off);
+static aisle_place project(const aisle_drive_path *path, double ahead, aisle_pose2 pose, aisle_off *off) {
+    return aisle_motion_project(path->msg->waypoints, count_of(path), path->at, BACK, ahead, pose, off);
+}
+
+static aisle_place held_back(const aisle_drive_path *path, aisle_place found) { // to the next goal, if it is beyond it
     const aisle_place goal = next_goal(path);
     return is_beyond(found, goal) ? goal : found;
 }
 
-// Has it gone on over the next goal of what is out, which is not counted as reached?
-static bool has_gone_on(const aisle_drive *self, double ahead, aisle_pose2 here) {
+// The place of `pose` on a path, no farther than the next goal.
+static aisle_place find(const aisle_drive_path *path, double ahead, aisle_pose2 pose, aisle_off *off) {
+    return held_back(path, project(path, ahead, pose, off));
+}
+
+// Has the vehicle, found at this place of what is out, gone on over the next goal, which is not counted as reached?
+static bool has_gone_on(const aisle_drive *self, aisle_place found, aisle_pose2 here) {
     const aisle_drive_path *out = &self->out;
-    const aisle_waypoint_msg *w = out->msg->waypoints;
     const aisle_place goal = next_goal(out);
-    if (self->passed >= self->num_goals ||
-        !is_beyond(aisle_motion_project(w, count_of(out), out->at, BACK, ahead, here, NULL), goal)) {
+    if (self->passed >= self->num_goals || !is_beyond(found, goal)) {
         return false;
     }
-    const aisle_pose2 there = aisle_motion_pose(w, count_of(out), goal);
+    const aisle_pose2 there = aisle_motion_pose(out->msg->waypoints, count_of(out), goal);
     const double told = (double)self->goals[self->passed].tolerance_xy;
     const double room = (told > 0.0 ? told : AISLE_DRIVE_OFF) + AISLE_DRIVE_OFF;
     return aisle_vec2_distance(aisle_vec2_of(here.x, here.y), aisle_vec2_of(there.x, there.y)) > room ||
@@ -168,8 +172,9 @@ void aisle_drive_locate(aisle_drive *self, const aisle_vehicle *vehicle, const a
     bool has_left_goal = false;
     if (self->has_out) { // and the same on the plan, though what is out may begin ahead of the pose
         const aisle_drive_path *out = &self->out;
-        has_left_goal = has_gone_on(self, ahead, here);
-        self->out.at = find(out, ahead, here, &self->off);
+        const aisle_place found = project(out, ahead, here, &self->off);
+        has_left_goal = has_gone_on(self, found, here);
+        self->out.at = held_back(out, found);
         const aisle_pose2 place = aisle_motion_pose(out->msg->waypoints, count_of(out), out->at);
         self->plan.at = find(&self->plan, ahead + AHEAD, place, NULL);
     } else {
@@ -211,8 +216,7 @@ static void move_on(aisle_drive *self, int64_t now_us) {
     const aisle_vehicle *vehicle = self->world.vehicle;
     const aisle_waypoint_msg *w = out->msg->waypoints;
     const double t = aisle_motion_time(vehicle, w, n, out->dwell, out->at) + age;
-    const aisle_place at = aisle_motion_at_time(vehicle, w, n, out->dwell, t), goal = next_goal(out);
-    self->out.at = is_beyond(at, goal) ? goal : at;
+    self->out.at = held_back(out, aisle_motion_at_time(vehicle, w, n, out->dwell, t));
     self->at_us = now_us;
     self->plan.at = find(&self->plan, AHEAD + age * vehicle->v_max, aisle_motion_pose(w, n, self->out.at), NULL);
 }
@@ -291,7 +295,7 @@ static bool time_joined(aisle_drive *self, const aisle_drive_world *world, const
     aisle_profile_sum sum;
     aisle_goal_dwells(w, n, goals, num_goals, joined->dwell);
     joined->dwell[0] = 0.0F; // whatever is left of it is the mission's
-    aisle_profile_path way = {w, joined->dwell, n, AISLE_PATH_MAX_WAYPOINTS, 0, 0};
+    aisle_profile_path way = {.w = w, .dwell = joined->dwell, .n = n, .capacity = AISLE_PATH_MAX_WAYPOINTS};
     const aisle_status st = aisle_profile_fill_ramps(world->vehicle, world->layout, &way, &start, &sum);
     joined->msg->num_waypoints = (int16_t)way.n;
     return st == AISLE_OK || st == AISLE_PARTIAL;

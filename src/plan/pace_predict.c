@@ -42,7 +42,8 @@ static void take_way(aisle_pace_predict *self) {
                        self->dwell[0] > 0.0F;
     self->v = rests || request->v < AISLE_PACE_RESTING ? 0.0 : aisle_min(request->v, AISLE_VEHICLE_SPEED_MAX);
     const aisle_profile_start start = {self->v, NULL};
-    aisle_profile_path way = {self->w, self->dwell, self->n, AISLE_PATH_MAX_WAYPOINTS, self->until, 0};
+    aisle_profile_path way = {
+        .w = self->w, .dwell = self->dwell, .n = self->n, .capacity = AISLE_PATH_MAX_WAYPOINTS, .mark = self->until};
     aisle_profile_sum sum;
     const aisle_status st = aisle_profile_fill_ramps(request->vehicle, request->layout, &way, &start, &sum);
     self->until = way.mark;
