@@ -45,21 +45,32 @@ static uint32_t clamp_index(double at, uint32_t n, bool *inside) {
     return (uint32_t)at;
 }
 
+typedef struct spot { // a cell by column and row
+    uint32_t ix, iy;
+} spot;
+
+static spot spot_of(const aisle_lattice *lattice, aisle_vec2 p, bool *inside) {
+    *inside = true;
+    return (spot){clamp_index((p.x - lattice->x0) / lattice->res, lattice->w, inside),
+                  clamp_index((p.y - lattice->y0) / lattice->res, lattice->h, inside)};
+}
+
+static aisle_vec2 centre_of(const aisle_lattice *lattice, spot at) {
+    return aisle_vec2_of(lattice->x0 + ((double)at.ix + 0.5) * lattice->res,
+                         lattice->y0 + ((double)at.iy + 0.5) * lattice->res);
+}
+
 uint32_t aisle_lattice_cell(const aisle_lattice *lattice, aisle_vec2 p, bool *inside) {
-    bool in = true;
-    const uint32_t ix = clamp_index((p.x - lattice->x0) / lattice->res, lattice->w, &in);
-    const uint32_t iy = clamp_index((p.y - lattice->y0) / lattice->res, lattice->h, &in);
+    bool in;
+    const spot at = spot_of(lattice, p, &in);
     if (inside != NULL) {
         *inside = in;
     }
-    return iy * lattice->w + ix;
+    return at.iy * lattice->w + at.ix;
 }
 
 aisle_vec2 aisle_lattice_centre(const aisle_lattice *lattice, uint32_t cell) {
-    const uint32_t ix = cell % lattice->w;
-    const uint32_t iy = cell / lattice->w;
-    return aisle_vec2_of(lattice->x0 + ((double)ix + 0.5) * lattice->res,
-                         lattice->y0 + ((double)iy + 0.5) * lattice->res);
+    return centre_of(lattice, (spot){cell % lattice->w, cell / lattice->w});
 }
 
 aisle_cells aisle_lattice_cells(const aisle_lattice *lattice) {
@@ -179,12 +190,9 @@ static double centre_gap(const aisle_grid *self, aisle_vec2 p, bool *inside, uin
     AISLE_ASSERT(self->phase == PHASE_DONE);
     const aisle_lattice *lattice = &self->lattice;
     const double res = lattice->res;
-    *inside = true;
-    const uint32_t ix = clamp_index((p.x - lattice->x0) / res, lattice->w, inside);
-    const uint32_t iy = clamp_index((p.y - lattice->y0) / res, lattice->h, inside);
-    const aisle_vec2 centre = {lattice->x0 + ((double)ix + 0.5) * res, lattice->y0 + ((double)iy + 0.5) * res};
-    *q = *inside ? self->field[iy * lattice->w + ix] : 0U;
-    *off = aisle_vec2_distance(p, centre) + (HALF_DIAGONAL + AISLE_GRID_SLACK) * res;
+    const spot at = spot_of(lattice, p, inside);
+    *q = *inside ? self->field[at.iy * lattice->w + at.ix] : 0U;
+    *off = aisle_vec2_distance(p, centre_of(lattice, at)) + (HALF_DIAGONAL + AISLE_GRID_SLACK) * res;
     return sqrt((double)*q) * res;
 }
 
