@@ -19,10 +19,10 @@
 //     a = (v1^2 - v0^2) / (2 L),  dt = 2 L / (v0 + v1).
 // Waypoint i holds v at it and a of the piece that ends there (0 at the first).
 // A piece at rest at both ends is driven as a trapezoid (triangle) under its limit with a_max and d_max; it is written
-// as v = 0 at both ends and a = 0, dt the duration of the trapezoid. Any other piece is driven at the mean of the speeds at
-// its ends, a long one with a slow end slowly: aisle_profile_fill_ramps() cuts it. Turn on the spot by angle b: trapezoid (triangle) under omega_max
-// and alpha_max, v = 0 at both ends, a = 0. alpha_max is not asked elsewhere: arcs meet lines with a jump of curvature,
-// as all line-and-arc paths do.
+// as v = 0 at both ends and a = 0, dt the duration of the trapezoid. Any other piece is driven at the mean of the
+// speeds at its ends, a long one with a slow end slowly: aisle_profile_fill_ramps() cuts it. Turn on the spot by angle
+// b: trapezoid (triangle) under omega_max and alpha_max, v = 0 at both ends, a = 0. alpha_max is not asked elsewhere:
+// arcs meet lines with a jump of curvature, as all line-and-arc paths do.
 //
 // Energy (J): (rolling m g c L + gain of kinetic energy m (v1^2 - v0^2) / 2 where positive, m vp^2 / 2 with the peak vp
 // where both ends are at rest) / efficiency + idle power * duration; a turn: rolling over outer_radius * |turn|. g
@@ -76,14 +76,15 @@ typedef struct aisle_profile_start {
 } aisle_profile_start;
 
 // The same for a path whose first waypoint is in motion (start->v > 0) or that is not to be as fast as it could. Each
-// waypoint but the first is at most at its `most` or, where braking at once from start->v leaves no choice, at the speed
-// it leaves, sqrt(v^2 - 2 d_max s). A piece from rest to rest keeps to the greater `most` of its ends. For braking to end
-// where it can, the caller cuts a piece where that speed is `most`. The first waypoint's REVERSE is not looked at; its v is
-// start->v rounded down, or less by a relative 1e-6 where rounding lets the brakes not quite suffice.
+// waypoint but the first is at most at its `most` or, where braking at once from start->v leaves no choice, at the
+// speed it leaves, sqrt(v^2 - 2 d_max s). A piece from rest to rest keeps to the greater `most` of its ends. For
+// braking to end where it can, the caller cuts a piece where that speed is `most`. The first waypoint's REVERSE is not
+// looked at; its v is start->v rounded down, or less by a relative 1e-6 where rounding lets the brakes not quite
+// suffice.
 //
-// Beside the answers of aisle_profile_fill(): AISLE_ERR_ARG, nothing changed: start NULL or out of range; in motion, but
-// the first waypoint carries STOP or TURN_IN_PLACE, has a dwell or is the only one. AISLE_PARTIAL: all is filled, but
-// start->v is too fast for what follows even if it brakes with d_max: the first v is as much as is not.
+// Beside the answers of aisle_profile_fill(): AISLE_ERR_ARG, nothing changed: start NULL or out of range; in motion,
+// but the first waypoint carries STOP or TURN_IN_PLACE, has a dwell or is the only one. AISLE_PARTIAL: all is filled,
+// but start->v is too fast for what follows even if it brakes with d_max: the first v is as much as is not.
 aisle_status aisle_profile_fill_moving(const aisle_vehicle *vehicle, const aisle_layout *layout, aisle_waypoint_msg *w,
                                        uint32_t n, const float *dwell, const aisle_profile_start *start,
                                        aisle_profile_sum *sum);
@@ -97,12 +98,13 @@ typedef struct aisle_profile_path {
     uint32_t whole; // pieces, the first ones, that are not to be cut
 } aisle_profile_path;
 
-// The same again, as fast as the limits of whole pieces allow. A piece that would take more than AISLE_PROFILE_RAMP_GAIN
-// less if it sped up with a_max to its limit, or to where it has to brake, and braked with d_max, is cut there: into up to
-// three parts. Waypoints put in are on the piece, with its curvature, clearance and REVERSE, no dwell and no other flag.
-// Pieces from rest to rest, turns, the first path->whole pieces and those on which `most` falls or rises to a finite
-// bound are left whole; so are those behind the first one for which there is no room. The first speed and those of the waypoints there were are the same, but
-// for rounding. start->most: [n], of the path as it comes. Beside the answers above AISLE_ERR_ARG: capacity < n.
+// The same again, as fast as the limits of whole pieces allow. A piece that would take more than
+// AISLE_PROFILE_RAMP_GAIN less if it sped up with a_max to its limit, or to where it has to brake, and braked with
+// d_max, is cut there: into up to three parts. Waypoints put in are on the piece, with its curvature, clearance and
+// REVERSE, no dwell and no other flag. Pieces from rest to rest, turns, the first path->whole pieces and those on which
+// `most` falls or rises to a finite bound are left whole; so are those behind the first one for which there is no room.
+// The first speed and those of the waypoints there were are the same, but for rounding. start->most: [n], of the path
+// as it comes. Beside the answers above AISLE_ERR_ARG: capacity < n.
 aisle_status aisle_profile_fill_ramps(const aisle_vehicle *vehicle, const aisle_layout *layout,
                                       aisle_profile_path *path, const aisle_profile_start *start,
                                       aisle_profile_sum *sum);
