@@ -57,17 +57,23 @@ static bool turning(uint32_t i) {
     return flagged(i - 1, AISLE_WAYPOINT_TURN_IN_PLACE);
 } // piece i
 
-static long double judge_length(uint32_t i) {
-    const long double chord = hypotl(ld(path[i].x) - ld(path[i - 1].x), ld(path[i].y) - ld(path[i - 1].y));
-    const long double curvature = fabsl(lf(path[i].curvature));
-    if (turning(i)) {
+static long double length_between(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    const long double chord = hypotl(ld(to->x) - ld(from->x), ld(to->y) - ld(from->y));
+    const long double curvature = fabsl(lf(to->curvature));
+    if ((from->flags & AISLE_WAYPOINT_TURN_IN_PLACE) != 0) {
         return 0.0L;
     }
     return curvature * chord < 1e-9L ? chord : 2.0L * asinl(fminl(1.0L, 0.5L * curvature * chord)) / curvature;
 }
+static long double turn_between(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to) {
+    return remainderl(ld(to->theta) - ld(from->theta), 2.0L * acosl(-1.0L));
+}
 
+static long double judge_length(uint32_t i) {
+    return length_between(&path[i - 1], &path[i]);
+}
 static long double judge_turn(uint32_t i) {
-    return fabsl(remainderl(ld(path[i].theta) - ld(path[i - 1].theta), 2.0L * acosl(-1.0L)));
+    return fabsl(turn_between(&path[i - 1], &path[i]));
 }
 
 static bool judge_rest(uint32_t i) {
@@ -367,24 +373,62 @@ static long double judge_fastest(uint32_t i) {
     return (lo - v0) / up + (lo - v1) / down + fmaxl(length - ways, 0.0L) / lo;
 }
 
-// Every waypoint there was is there yet, with its speed by `plain`, in this order; what is new is on its piece. Gives every new one
-// a bound for the judge. most: of the path as it was.
-static void judge_kept(const aisle_waypoint_msg *plain, const float *bounds) {
+// m, from w to the line or the circle of the piece between two waypoints.
+static long double off_piece(const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
+                             const aisle_waypoint_msg *w) {
+    const long double dx = ld(to->x) - ld(from->x), dy = ld(to->y) - ld(from->y), chord = hypotl(dx, dy);
+    const long double x = ld(w->x) - ld(from->x), y = ld(w->y) - ld(from->y), curvature = lf(to->curvature);
+    const long double along = (x * dx + y * dy) / chord, left = (dx * y - dy * x) / chord;
+    if (fabsl(curvature) * chord < 1e-9L) {
+        return fabsl(left);
+    }
+    const long double radius = 1.0L / fabsl(curvature); // of a left turn the centre is to the left
+    const long double middle = sqrtl(fmaxl(radius * radius - 0.25L * chord * chord, 0.0L));
+    return fabsl(hypotl(along - 0.5L * chord, left - copysignl(middle, curvature)) - radius);
+}
+
+// Waypoint i, new, is on the piece to whole[old]; `length` and `turn` from where that begins are in proportion.
+static void judge_new(uint32_t i, uint32_t old, long double length, long double turn) {
+    TEST_ASSERT_TRUE(i > 0 && old > 0);
+    const aisle_waypoint_msg *from = &whole[old - 1], *to = &whole[old];
+    const long double all = length_between(from, to);
+    TEST_ASSERT_TRUE(judge_length(i) > 4.9e-6L && length < all);
+    TEST_ASSERT_TRUE(off_piece(from, to, &path[i]) <= 1e-9L);
+    TEST_ASSERT_TRUE(fabsl(turn - turn_between(from, to) * length / all) <= 1e-9L);
+    TEST_ASSERT_FALSE(path[i].curvature != to->curvature || path[i].clearance != to->clearance || dwell[i] > 0.0F);
+    TEST_ASSERT_EQUAL_INT(to->flags & AISLE_WAYPOINT_REVERSE, path[i].flags);
+}
+
+// The parts of the piece to whole[old] add up to it.
+static void judge_sums(uint32_t old, long double length, long double turn) {
+    const aisle_waypoint_msg *from = &whole[old - 1], *to = &whole[old];
+    TEST_ASSERT_TRUE(fabsl(length - length_between(from, to)) <= 1e-9L);
+    TEST_ASSERT_TRUE(fabsl(turn - turn_between(from, to)) <= 1e-9L);
+}
+
+// Every waypoint there was is there yet, in this order, with its speed by `plain` and its dwell by `rests`; what is new
+// is on its piece. Gives every new one a bound for the judge. bounds: of the path as it was.
+static void judge_kept(const aisle_waypoint_msg *plain, const float *bounds, const float *rests) {
     uint32_t old = 0;
+    long double length = 0.0L, turn = 0.0L; // since the last waypoint there was
     for (uint32_t i = 0; i < count; i++) {
         const aisle_waypoint_msg *w = &whole[old];
         const bool same = !(path[i].x != w->x) && !(path[i].y != w->y) && !(path[i].theta != w->theta) &&
                           path[i].flags == w->flags && path[i].goal_id == w->goal_id;
+        length += i > 0 ? judge_length(i) : 0.0L;
+        turn += i > 0 ? turn_between(&path[i - 1], &path[i]) : 0.0L;
+        most[i] = bounds[old];
         if (same && (old == 0 || !(path[i].curvature != w->curvature || path[i].clearance != w->clearance))) {
             TEST_ASSERT_FLOAT_WITHIN(2e-6F * plain[old].v, plain[old].v, path[i].v);
-            most[i] = bounds[old++];
-            continue;
+            TEST_ASSERT_EQUAL_MEMORY(&rests[old], &dwell[i], sizeof dwell[i]);
+            if (old > 0) {
+                judge_sums(old, length, turn);
+            }
+            length = turn = 0.0L;
+            old++;
+        } else {
+            judge_new(i, old, length, turn);
         }
-        const double before = hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y);
-        TEST_ASSERT_TRUE(before > 4.9e-6 && !(dwell[i] > 0.0F)); // a new one
-        TEST_ASSERT_FALSE(path[i].curvature != w->curvature || path[i].clearance != w->clearance);
-        TEST_ASSERT_EQUAL_INT(w->flags & AISLE_WAYPOINT_REVERSE, path[i].flags);
-        most[i] = bounds[old];
     }
     TEST_ASSERT_EQUAL_UINT32(whole_count, old);
 }
@@ -409,7 +453,7 @@ static void test_with_ramps_every_rule_holds_and_no_piece_could_be_driven_faster
         memcpy(plain, path, sizeof plain);
         const double duration = sum.duration;
         TEST_ASSERT_EQUAL_INT(st, fill_ramps(CAPACITY));
-        judge_kept(plain, bounds);
+        judge_kept(plain, bounds, rests);
         (void)judge_path();
         TEST_ASSERT_TRUE(sum.duration <= duration + 1e-3);
         for (uint32_t i = 1; i < count; i++) {
