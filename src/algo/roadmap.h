@@ -11,19 +11,21 @@
 //         when a search first comes to its end by it, as in lazy weighted A* (Cohen, Phillips, Likhachev 2014,
 //         doi:10.15607/RSS.2014.X.034): if it is blocked the node goes on by the next best edge from a node that is
 //         done with. Each edge is tested once, and the way found is the same as with all tested before;
-//     blocks: where more is drawn, the new nodes are joined to their k nearest of all so far, and the old ones' lists stay,
-//         as in the paper where each node is joined to those before it: long motions of when nodes were few stay, by which
-//         a roadmap hangs together sooner. Later draws may be moved off what they touch (config.uniform), so that slits get
-//         draws; they stay where they are when the space changes, so then only uniform ones are those of one built anew;
+//     blocks: draws come in blocks (config.first, then grow()); the nodes of one are joined to their k nearest of all
+//         so far, and earlier ones' lists stay, as in the paper where each node is joined to those before it: long
+//         motions of when nodes were few stay, by which a roadmap hangs together sooner;
+//     moved draws: later ones may be moved off what they touch (config.uniform), so that slits get draws;
 //     repair: a change of the space, told as which motions it may touch, tests only the draws and edges it touches
 //         again, and only lists of neighbours with a draw in them that came or left are made anew. Repaired and built
-//         anew have the same nodes, lists and free edges.
+//         anew have the same nodes, lists and free edges if all draws are uniform; moved ones stay where they are,
+//         where one built anew moves them otherwise.
 // An edge is in the list of either of its ends, or both. Where is_free() may differ from a to b and from b to a
 // (config.one_way) both are tested and kept apart.
 //
 // Memory: for each draw 8 dim + 8 bytes, 7 for each of its k edges, and the index (near.h); a search 31 a draw, which
-// others may use between queries. Nothing is allocated. Time: building O(n (k + log n)) and, eager, up to n k tests;
-// a query O(nodes seen * (degree + log n)) and its tests; a repair O(n k touches()) and its tests. Each in slices.
+// others may use between queries. Nothing is allocated. Time: building O(n (k^2 + log n)) and, eager, up to 2 n k
+// tests; a query O(nodes seen * (degree + log n)) and its tests; a repair O(n (k touches() + draws that came)) and its
+// tests. Each in slices.
 // Determinism: same space, config and changes give the same bits however cut into steps; ties by index.
 #ifndef AISLE_ALGO_ROADMAP_H
 #define AISLE_ALGO_ROADMAP_H
@@ -35,7 +37,7 @@
 
 #define AISLE_ROADMAP_SAMPLES_MAX 65000U
 #define AISLE_ROADMAP_K_MAX 32U
-#define AISLE_ROADMAP_BLOCKS 16U // that draws come in: one, and one for each growth
+#define AISLE_ROADMAP_BLOCKS 16U // that draws come in, at most
 #define AISLE_ROADMAP_NONE UINT32_MAX
 
 // Does what has changed matter to the motion from a to b (a = b: to this configuration)? May say yes where it does not.
@@ -95,27 +97,26 @@ typedef struct aisle_roadmap {
     aisle_roadmap_touch_fn touches;
     void *touch_context;
     aisle_roadmap_phase phase;
-    uint32_t
-        end[AISLE_ROADMAP_BLOCKS]; // draws at the end of each block: those to begin with, then those of each growth
-    uint32_t blocks, block;        // how many; whose neighbours are looked for
-    uint32_t at;                   // in the phase
-    uint32_t came, left;           // draws, by the repair under way
-    aisle_roadmap_work work;       // under way or done last
-    uint32_t edge_tests;           // calls of is_free() for edges of the roadmap
-    uint32_t retested;             // draws and edges that repairs have put in doubt
-    uint32_t lists_renewed;        // by repairs
+    uint32_t end[AISLE_ROADMAP_BLOCKS]; // draws up to the end of each block
+    uint32_t blocks, block;             // how many; whose neighbours are looked for
+    uint32_t at;                        // in the phase
+    uint32_t came, left;                // draws, by the repair under way
+    aisle_roadmap_work work;            // under way or done last
+    uint32_t edge_tests;                // calls of is_free() for edges of the roadmap
+    uint32_t retested;                  // draws and edges that repairs have put in doubt
+    uint32_t lists_renewed;             // by repairs
 } aisle_roadmap;
 
-// For `samples` draws in [1, AISLE_ROADMAP_SAMPLES_MAX] of `dim` numbers and k in [1, AISLE_ROADMAP_K_MAX] nearest. Usable
-// unless arena->overflow or measuring.
+// For `samples` draws in [1, AISLE_ROADMAP_SAMPLES_MAX] of `dim` numbers and k in [1, AISLE_ROADMAP_K_MAX] nearest.
+// Usable unless arena->overflow or measuring.
 void aisle_roadmap_carve(aisle_roadmap *self, aisle_arena *arena, uint32_t dim, uint32_t samples, uint32_t k);
 
-// Begins to build from nothing. The space must stay as it is, but for changes told to repair(). AISLE_ERR_ARG: config is
-// out of range or the space has more dimensions; self is unchanged.
+// Begins to build from nothing. The space must stay as it is, but for changes told to repair(). AISLE_ERR_ARG: config
+// is out of range or the space has more dimensions; self is unchanged.
 aisle_status aisle_roadmap_start(aisle_roadmap *self, const aisle_cspace *space, const aisle_roadmap_config *config);
 
-// When it is ready: goes on to so many draws, more than there are. AISLE_ERR_ARG, nothing changed: they are not more, too
-// many, or it has grown AISLE_ROADMAP_BLOCKS - 1 times.
+// When it is ready: goes on to so many draws, more than there are. AISLE_ERR_ARG, nothing changed: they are not more,
+// too many, or there are AISLE_ROADMAP_BLOCKS blocks.
 aisle_status aisle_roadmap_grow(aisle_roadmap *self, uint32_t samples);
 
 // When it is ready: the space has changed where `touches` says so; begins to repair. context lives until it is ready.
@@ -125,8 +126,8 @@ void aisle_roadmap_repair(aisle_roadmap *self, aisle_roadmap_touch_fn touches, v
 // then AISLE_OK: ready. AISLE_ERR_ARG: nothing was started.
 aisle_status aisle_roadmap_step(aisle_roadmap *self, uint32_t units, uint32_t *spent);
 
-// Takes all that another one knows, of the same capacity and k, which is ready; `space` says the same as its one. step()
-// then makes the index anew.
+// Takes all that another one knows, of the same capacity and k, which is ready; `space` says the same as its one.
+// step() then makes the index anew.
 void aisle_roadmap_copy(aisle_roadmap *self, const aisle_roadmap *other, const aisle_cspace *space);
 
 // ---- the query phase
@@ -148,8 +149,8 @@ typedef struct aisle_roadmap_search {
 
 void aisle_roadmap_search_carve(aisle_roadmap_search *self, aisle_arena *arena, uint32_t samples);
 
-// Begins a query on a roadmap that is ready; from[dim], to[dim] within the space's bounds. The motion from end to end is
-// tried first. What is learnt of edges stays in the roadmap.
+// Begins a query on a roadmap that is ready; from[dim], to[dim] within the space's bounds. The motion from end to end
+// is tried first. What is learnt of edges stays in the roadmap.
 void aisle_roadmap_ask(aisle_roadmap_search *self, aisle_roadmap *roadmap, aisle_roadmap_search_kind kind,
                        const double *from, const double *to, uint32_t *spent);
 

@@ -2,16 +2,18 @@
 //
 // RECALL an answer to the same question (cache.h), give it this request's head and REPROVE it: the answer, flag `cached`
 // set. Spoiled or disproved it is forgotten and the request planned anew. Every answer to a query is remembered.
-// REPAIR, where none is but one that an obstacle stands on by now (cache.h): of each leg the free pieces before and behind
-// what is blocked are kept, between them the shortest way of the turning disc is searched, with the creep clearance to
-// spare where that is possible (but for SHORTEST); BUILD, VERIFY; taken if it is worth as much as cache.h says, else all is
-// planned anew. AUTO and ASTAR alone, paths without manoeuvres, no disc's SHORTEST ones (planned with less work); a quarter
-// of the budget at most.
-// CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move); ORDER the goals if they may come in
-// any (those behind the ones kept): by the lengths of the exact ways of the disc inside the footprint (tour.h), whatever the objective, with half of
-// the budget at most; what is the best by then is flagged by cause BUDGET beside the path. A goal that no way leads to
-// comes first and is refused like that of a first leg. Then one way after the other, as route_ways.c lists them for the
-// objective; the best proved path by the objective's own measure is the answer:
+// REPAIR, where none is but one that an obstacle stands on by now (cache.h): of each leg the free pieces before and
+// behind what is blocked are kept, between them the shortest way of the turning disc is searched, with the creep
+// clearance to spare where that is possible (but for SHORTEST), or, for a tree by name, a tree of its kind grows; BUILD,
+// VERIFY; taken if it is worth as much as cache.h says, else all is planned anew. AUTO and ASTAR (no car's paths, no
+// disc's SHORTEST ones, planned with less work), and trees of places (not PAPER's); no paths with reversals; a quarter of
+// the budget at most.
+// CHECK start and goals exactly (NEAREST where a stop is occupied: how far to move); ORDER the goals if they may come
+// in any (those behind the ones kept): by the lengths of the exact ways of the disc inside the footprint (tour.h),
+// whatever the objective, with half of the budget at most; what is the best by then is flagged by cause BUDGET beside
+// the path. A goal that no way leads to comes first and is refused like that of a first leg. Then one way after the
+// other, as route_ways.c lists them for the objective; the best proved path by the objective's own measure is the
+// answer:
 //     SHORTEST   length                            SHORT
 //     SAFEST     risk, to 1e-4, then length        SHORT, CLEAR; long bodies also the two GRID ways below
 //     FASTEST    duration                          SHORT, CLEAR, GRID for duration, GRID for energy
@@ -19,7 +21,8 @@
 // A way: per leg TANGENT (tangent.h; the first way's search also gives the bound), where the body cannot follow what that
 // finds MANOEUVRE (manoeuvre.h, first way alone: it serves every objective), led by the tightest way found and, if that
 // fails, by the widest one; where that is not the way's kind or finds none SEED (seed.h) and TAUT; BUILD, VERIFY; per leg
-// SWARM where it may gain something, BUILD, VERIFY. A later way that fails is given up; an answer is told early (AISLE_PARTIAL, once) when what follows takes long.
+// SWARM where it may gain something, BUILD, VERIFY. A later way that fails is given up; an answer is told early
+// (AISLE_PARTIAL, once) when what follows takes long.
 // Planner by name: ASTAR leaves the swarm out; PSO is the objective's GRID way alone and takes the swarm's path wherever
 // it is proved; PSO with objective PAPER is the paper's own swarm (PAPER) alone, its path or a refusal (BUDGET: it found
 // none, which proves nothing).
@@ -28,10 +31,11 @@
 // trees; a star that this ends before its samples is flagged by cause BUDGET beside the path. No way: WHY, for a proof, else
 // BUDGET. AUTO asks RRT_ADAPTIVE in the place of a KINEMATIC or BUDGET refusal by WHY: where nothing else found a way and none
 // was proved away.
-// PRM: the same with a roadmap (roadmap.h), asked for each leg, by A*; its edges are tested when a search comes to them. It
-// begins with AISLE_ROUTE_ROADMAP_FIRST draws, or options.num_samples, and where it does not join a leg's ends doubles them, up
-// to what fits, the later ones moved off what they touch. A query's stays (roadmap_keep.h): the next one only asks, after a repair where patches have changed the layout. A
-// goal list works on a copy and leaves nothing. Objective PAPER: the paper's form, of AISLE_ROUTE_ROADMAP_PLAIN draws or
+// PRM: the same with a roadmap (roadmap.h), asked for each leg, by A*; its edges are tested when a search comes to
+// them. It begins with AISLE_ROUTE_ROADMAP_FIRST uniform draws, or options.num_samples, in blocks, and where it does not
+// join a leg's ends doubles them, up to what fits, the later ones moved off what they touch. A query's stays
+// (roadmap_keep.h): the next one only asks, after a repair where patches have changed the layout. A goal list works on a
+// copy and leaves nothing. Objective PAPER: the paper's form, of AISLE_ROUTE_ROADMAP_PLAIN draws or
 // options.num_samples, all edges tested first, Dijkstra's search, and no more draws where it fails.
 // GA is the exact way for SHORTEST, else the objective's GRID way alone; each leg's seed is bred (barrier.h), pulled taut and
 // built in its place; disproved, all is planned again without. With objective PAPER it is the paper's own form alone, in
@@ -54,8 +58,8 @@
 // planned again for the disc in which it turns; if it turns the seed path down it is built again with stops in all
 // corners; if that fails too, the cause is KINEMATIC (a way for the body exists, the turns it needs were
 // not proved) or VERIFY_FAILED.
-// Memory: from the arena, about 0.8 MiB and the searches' cells, these at least 0.4 MiB. Time: at most the budget plus
-// one indivisible piece of each stage.
+// Memory: from the arena, about 0.6 MiB, one bit a cell and the searches' memory, at least 0.4 MiB. Time: at most the
+// budget plus one indivisible piece of each stage.
 #ifndef AISLE_PLAN_ROUTE_H
 #define AISLE_PLAN_ROUTE_H
 

@@ -1,12 +1,13 @@
 // space.h - where the vehicle may be: the search's own collision test. Level 4.
 //
-// Two ways to stand for the body. FREE_TURN: the disc about the origin that holds the footprint at every heading; what
-// it sweeps can be driven with any turns. ALONG: the exact footprint with its heading along the motion; used where the
-// disc does not fit. Everything keeps margin + AISLE_SPACE_SLACK from obstacles; the slack is what the verifier needs
-// for its sagittas. Order of tests: bounds from the distance field first, the exact gap only where they leave a doubt
-// (near contours). The verifier shares none of this.
-// Memory: one bit a cell and 16 KiB. Time: O(1) from the field; O(obstacles near) for an exact test. Every test adds its work
-// units to *units.
+// Two ways to stand for the body that is driven straight. FREE_TURN: the disc about the origin that holds the footprint
+// at every heading; what it sweeps can be driven with any turns. ALONG: the exact footprint with its heading along the
+// motion; used where the disc does not fit. Both keep margin + AISLE_SPACE_SLACK from obstacles; the slack is what the
+// verifier needs for its sagittas. Pieces and moves, which may bend and turn, are tested as the footprint with their
+// own headings, whatever the mode, and keep what is asked. Order of tests: bounds from the distance field first, the
+// exact gap only where they leave a doubt (near contours). The verifier shares none of this.
+// Memory: one bit a cell and 16 KiB. Time: O(1) from the field; O(obstacles near) for an exact test. What is given
+// `units` adds its work to it.
 #ifndef AISLE_PLAN_SPACE_H
 #define AISLE_PLAN_SPACE_H
 
@@ -53,28 +54,25 @@ void aisle_space_begin(aisle_space *self, const aisle_layout *layout, const aisl
                        aisle_space_mode mode);
 
 // FREE_TURN: may the disc stand in the cell's centre so that every move of `step` (m, straight; diagonal sqrt(2) of
-// it) to
-// another such centre is free? (Both ends at least sqrt(reach^2 + step^2 / 2) from a point keep the segment at least
-// reach from it.) Remembered: within one begin() step must not grow.
+// it) to another such centre is free? (Both ends at least sqrt(reach^2 + step^2 / 2) from a point keep the segment at
+// least reach from it.) Remembered: within one begin() step must not grow.
 bool aisle_space_cell_free(aisle_space *self, uint32_t cell, double step, uint32_t *units);
 
 // The roomiest point of a cell, climbed to from its centre by a pattern search (8 directions, halving down to 1/256
-// of a
-// cell): a local maximum of the exact gap, deterministic. *gap: there, m, at most reach + a cell. About 60 exact gaps.
+// of a cell): a local maximum of the exact gap, deterministic. *gap: there, m, at most reach + a cell. About 60 exact
+// gaps.
 aisle_vec2 aisle_space_roomiest(const aisle_space *self, uint32_t cell, double *gap, uint32_t *units);
 
-// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode, and against
-// no DIRECTED zone? a = b: false.
+// Is the straight way from a to b free for the exact footprint with its heading along it, whatever the mode, and
+// against no DIRECTED zone? a = b: false.
 bool aisle_space_body_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Can the body turn to any heading at p?
 bool aisle_space_turn_free(const aisle_space *self, aisle_vec2 p, uint32_t *units);
 
 // Does the cell hold a point `reach` (m) or more from every obstacle? Branch and bound on the exact gap, `depth`
-// halvings
-// deep, at most AISLE_SPACE_DEPTH_MAX: "no" is a proof; "yes" may be wrong by 2^-depth of a cell's half diagonal. A
-// yes is
-// remembered until forget(), so reach and depth stay the same meanwhile.
+// halvings deep, at most AISLE_SPACE_DEPTH_MAX: "no" is a proof; "yes" may be wrong by 2^-depth of a cell's half
+// diagonal. A yes is remembered until forget(), so reach and depth stay the same meanwhile.
 bool aisle_space_cell_holds(aisle_space *self, uint32_t cell, double reach, uint32_t depth, uint32_t *units);
 
 // The same of a cell's square about `centre`, the exact part alone, with some polygons left out (NULL: none).
@@ -86,8 +84,8 @@ void aisle_space_forget(aisle_space *self); // O(words written)
 void aisle_space_note(aisle_space *self, uint32_t cell);
 bool aisle_space_is_noted(const aisle_space *self, uint32_t cell);
 
-// Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN), and against no DIRECTED zone? a = b:
-// the place alone.
+// Is the straight way from a to b free, heading along it (ALONG) or any (FREE_TURN), and against no DIRECTED zone?
+// a = b: the place alone.
 bool aisle_space_sweep_free(const aisle_space *self, aisle_vec2 a, aisle_vec2 b, uint32_t *units);
 
 // Gap between the footprint at pose and the nearest obstacle (exact), at most cap; *id that obstacle.
@@ -96,14 +94,13 @@ double aisle_space_gap(const aisle_space *self, aisle_pose2 pose, double cap, in
 // Is p so far from everything that the margin is kept at every heading and no objective cares? One look at the field.
 bool aisle_space_is_far(const aisle_space *self, aisle_vec2 p);
 
-// Is p surely so near to an obstacle that its centre may not be there (FREE_TURN: that the disc may not, ALONG: that no body
-// may)? One look at the field: "yes" is a proof, "no" says nothing.
+// Is p surely so near to an obstacle that its centre may not be there (FREE_TURN: that the disc may not, ALONG: that no
+// body may)? One look at the field: "yes" is a proof, "no" says nothing.
 bool aisle_space_is_covered(const aisle_space *self, aisle_vec2 p);
 
-// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius;
-// far_clearance where far.
-// Cheap; for costs, but never above the truth by as much as a cell's side: the four centres' distances are told right,
-// and p lies within half a diagonal of their weighted mean as an obstacle does of its cell's centre.
+// About the clearance of the footprint driven through p: the field, interpolated, less the inner radius; far_clearance
+// where far. Cheap; for costs, but never above the truth by as much as a cell's side: the four centres' distances are
+// told right, and p lies within half a diagonal of their weighted mean as an obstacle does of its cell's centre.
 double aisle_space_clearance_about(const aisle_space *self, aisle_vec2 p);
 
 // Least gap of the footprint over the whole piece between two waypoints, at most AISLE_CLEARANCE_CAP: a lower bound, at
@@ -119,8 +116,8 @@ double aisle_space_piece_clearance(const aisle_space *self, const aisle_waypoint
 bool aisle_space_piece_free(const aisle_space *self, const aisle_waypoint_msg *from, const aisle_waypoint_msg *to,
                             double need, uint32_t *units);
 
-// The same all along these moves from a configuration on, one after the other, and against no DIRECTED zone. backwards in
-// time: they are driven the other way round, from their end to `from`.
+// The same all along these moves from a configuration on, one after the other, and against no DIRECTED zone. backwards
+// in time: they are driven the other way round, from their end to `from`.
 bool aisle_space_moves_free(const aisle_space *self, aisle_pose2 from, const aisle_move *moves, uint32_t count,
                             double need, bool backwards, uint32_t *units);
 #endif
