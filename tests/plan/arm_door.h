@@ -3,6 +3,7 @@
 #define AISLE_TESTS_ARM_DOOR_H
 
 #include "aisle/planner.h"
+#include "arm_usual.h"
 #include "unity.h"
 #include "wire/codec.h"
 
@@ -29,24 +30,16 @@ DOOR_UNUSED void door_box(double x0, double y0, double x1, double y1) {
     memcpy(p->vertices, v, sizeof v);
 }
 
-// A vehicle of 1.0 x 0.7 m at (5, 5) looking along x, an arm of 0.5, 0.4 and 0.3 m at the middle of its front.
+// The usual arm, its vehicle at (5, 5) looking along x.
 DOOR_UNUSED void door_prepare(void) {
     memset(&door_layout, 0, sizeof door_layout);
-    memset(&door_vehicle, 0, sizeof door_vehicle);
     memset(&door_pose, 0, sizeof door_pose);
     memset(&door_goal, 0, sizeof door_goal);
     door_layout.map_id = door_layout.map_revision = 1;
     door_layout.num_parts = 1;
     door_layout.x_max = door_layout.y_max = 10.0;
+    arm_usual(&door_vehicle);
     door_vehicle.vehicle_revision = 1;
-    door_vehicle.num_links = 3;
-    door_vehicle.arm_base[0] = 0.5;
-    for (int i = 0; i < 3; i++) {
-        door_vehicle.link_length[i] = 0.5F - 0.1F * (float)i;
-        door_vehicle.link_radius[i] = 0.03F;
-        door_vehicle.joint_min[i] = i == 0 ? -1.0F : -2.8F;
-        door_vehicle.joint_max[i] = -door_vehicle.joint_min[i];
-    }
     door_pose = (aisle_pose_msg){.utime = 1, .seq = 1, .map_id = 1, .x = 5.0, .y = 5.0, .localized = 1};
     door_goal = (aisle_arm_goal_msg){.arm_goal_id = 7, .kind = AISLE_ARM_GOAL_POINT, .x = 6.2, .y = 5.4};
     door_goal.q_start[0] = -0.8F;

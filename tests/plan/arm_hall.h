@@ -2,6 +2,7 @@
 #ifndef AISLE_TESTS_ARM_HALL_H
 #define AISLE_TESTS_ARM_HALL_H
 
+#include "arm_usual.h"
 #include "hall.h"
 #include "plan/arm_free.h"
 
@@ -11,18 +12,9 @@ static aisle_arm arm;
 static aisle_arm_world world;
 static const aisle_pose2 arm_pose = {5.0, 5.0, 0.0};
 
-// A vehicle of 1.0 x 0.7 m at (5, 5) looking along x in an empty hall of 10 x 10 m, an arm of 0.5, 0.4 and 0.3 m at the middle of its
-// front.
+// The usual arm; its vehicle at (5, 5) looking along x in an empty hall of 10 x 10 m.
 HALL_UNUSED void arm_hall_begin(void) {
-    memset(&arm_msg, 0, sizeof arm_msg);
-    arm_msg.num_links = 3;
-    arm_msg.arm_base[0] = 0.5;
-    for (int i = 0; i < 3; i++) {
-        arm_msg.link_length[i] = 0.5F - 0.1F * (float)i;
-        arm_msg.link_radius[i] = 0.03F;
-        arm_msg.joint_min[i] = i == 0 ? -1.0F : -2.8F;
-        arm_msg.joint_max[i] = -arm_msg.joint_min[i];
-    }
+    arm_usual(&arm_msg);
     hall_begin(10.0, 10.0);
 }
 

@@ -59,27 +59,12 @@ static aisle_status run(uint64_t seed, uint32_t units, uint32_t *spent, double *
     return st;
 }
 
-// Are all limits held at FINE + 1 places when run in T seconds? Torques in long double by Newton and Euler.
+// Are all limits held at FINE + 1 places when run in so many seconds?
 static bool is_held(double duration) {
     for (int i = 0; i <= FINE; i++) {
-        const double r = (double)i / FINE;
-        double q[3], v[3], a[3], jerk[3];
-        long double torque[3];
-        aisle_arm_piece_at(&piece, r, 0, q);
-        aisle_arm_piece_at(&piece, r, 1, v);
-        aisle_arm_piece_at(&piece, r, 2, a);
-        aisle_arm_piece_at(&piece, r, 3, jerk);
-        for (uint32_t j = 0; j < arm.links; j++) {
-            v[j] /= duration;
-            a[j] /= duration * duration;
-            jerk[j] /= duration * duration * duration;
-        }
-        drawn_torques(&arm, 0.2, q, v, a, torque);
-        for (uint32_t j = 0; j < arm.links; j++) {
-            if (fabs(v[j]) > arm.v_max[j] || fabs(a[j]) > arm.a_max[j] || fabs(jerk[j]) > arm.j_max[j] ||
-                fabsl(torque[j]) > (long double)arm.torque_max[j]) {
-                return false;
-            }
+        const drawn_share share = drawn_shares(&arm, 0.2, &piece, (double)i / FINE, duration);
+        if (share.motion > 1.0 || share.torque > 1.0) {
+            return false;
         }
     }
     return true;

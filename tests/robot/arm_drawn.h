@@ -1,9 +1,10 @@
-// arm_drawn.h - test fixture: arms drawn from a seed, and their torques by Newton and Euler in long double.
+// arm_drawn.h - test fixture: arms drawn from a seed, their torques by Newton and Euler in long double, and how much of
+// its limits a piece takes.
 #ifndef AISLE_TESTS_ARM_DRAWN_H
 #define AISLE_TESTS_ARM_DRAWN_H
 
 #include "base/rng.h"
-#include "robot/arm.h"
+#include "robot/arm_motion.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,5 +68,33 @@ DRAWN_UNUSED void drawn_torques(const aisle_arm *arm, double theta, const double
         sum_y += fy[i];
         torque[i] = moment;
     }
+}
+
+typedef struct drawn_share { // of the joints' limits, the greatest; 1: reached
+    double motion, torque;   // of rate, acceleration and jerk
+} drawn_share;
+
+// At place r of a piece that is run in so many seconds, by an arm whose vehicle looks along theta.
+DRAWN_UNUSED drawn_share drawn_shares(const aisle_arm *arm, double theta, const aisle_arm_piece *piece, double r,
+                                      double duration) {
+    drawn_share share = {0.0, 0.0};
+    double q[3], v[3], a[3], jerk[3];
+    long double torque[3];
+    aisle_arm_piece_at(piece, r, 0, q);
+    aisle_arm_piece_at(piece, r, 1, v);
+    aisle_arm_piece_at(piece, r, 2, a);
+    aisle_arm_piece_at(piece, r, 3, jerk);
+    for (uint32_t j = 0; j < arm->links; j++) {
+        v[j] /= duration;
+        a[j] /= duration * duration;
+        jerk[j] /= duration * duration * duration;
+        share.motion = fmax(share.motion, fmax(fabs(v[j]) / arm->v_max[j], fabs(a[j]) / arm->a_max[j]));
+        share.motion = fmax(share.motion, fabs(jerk[j]) / arm->j_max[j]);
+    }
+    drawn_torques(arm, theta, q, v, a, torque);
+    for (uint32_t j = 0; j < arm->links; j++) {
+        share.torque = fmax(share.torque, fabs((double)torque[j]) / arm->torque_max[j]);
+    }
+    return share;
 }
 #endif

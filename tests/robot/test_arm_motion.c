@@ -57,29 +57,13 @@ static void test_a_bend_of_64_moves_the_middle_by_a_radian(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, q[0]);
 }
 
-// Worst share of each limit at FINE + 1 places when run in T seconds.
-static double worst_share(double duration, double *torque_share) {
-    double worst = 0.0;
-    *torque_share = 0.0;
+// The greatest shares of the limits at FINE + 1 places, when run in so many seconds.
+static drawn_share worst_share(double duration) {
+    drawn_share worst = {0.0, 0.0};
     for (int i = 0; i <= FINE; i++) {
-        const double r = (double)i / FINE;
-        double q[3], v[3], a[3], jerk[3];
-        long double torque[3];
-        aisle_arm_piece_at(&piece, r, 0, q);
-        aisle_arm_piece_at(&piece, r, 1, v);
-        aisle_arm_piece_at(&piece, r, 2, a);
-        aisle_arm_piece_at(&piece, r, 3, jerk);
-        for (uint32_t j = 0; j < arm.links; j++) {
-            v[j] /= duration;
-            a[j] /= duration * duration;
-            jerk[j] /= duration * duration * duration;
-            worst = fmax(
-                worst, fmax(fabs(v[j]) / arm.v_max[j], fmax(fabs(a[j]) / arm.a_max[j], fabs(jerk[j]) / arm.j_max[j])));
-        }
-        drawn_torques(&arm, 0.2, q, v, a, torque);
-        for (uint32_t j = 0; j < arm.links; j++) {
-            *torque_share = fmax(*torque_share, fabs((double)torque[j]) / arm.torque_max[j]);
-        }
+        const drawn_share share = drawn_shares(&arm, 0.2, &piece, (double)i / FINE, duration);
+        worst.motion = fmax(worst.motion, share.motion);
+        worst.torque = fmax(worst.torque, share.torque);
     }
     return worst;
 }
@@ -88,12 +72,11 @@ static void test_in_the_least_duration_some_limit_is_reached_and_none_passed(voi
     int by_torque = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
         aisle_arm_timing timing;
-        double torque;
         draw(seed, seed % 2U == 0U ? 4.0 : 0.0, 0.0);
         aisle_arm_least_duration(&arm, &dynamics, &piece, AISLE_ARM_TIMING_PANELS, &timing);
-        const double others = worst_share(timing.duration, &torque), worst = fmax(others, torque);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0, worst);
-        TEST_ASSERT_EQUAL(torque > others, timing.limit == AISLE_ARM_LIMIT_TORQUE);
+        const drawn_share worst = worst_share(timing.duration);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0, fmax(worst.motion, worst.torque));
+        TEST_ASSERT_EQUAL(worst.torque > worst.motion, timing.limit == AISLE_ARM_LIMIT_TORQUE);
         by_torque += timing.limit == AISLE_ARM_LIMIT_TORQUE ? 1 : 0;
     }
     TEST_ASSERT_INT_WITHIN(45, 50, by_torque); // both kinds are drawn
@@ -102,16 +85,15 @@ static void test_against_gravity_the_torque_limit_is_met_by_the_same_law(void) {
     int held = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
         aisle_arm_timing timing;
-        double torque;
         draw(seed, 60.0, 9.81);
         aisle_arm_least_duration(&arm, &dynamics, &piece, AISLE_ARM_TIMING_PANELS, &timing);
         if (!(timing.duration < (double)INFINITY)) { // too heavy somewhere, however slow
-            (void)worst_share(1e6, &torque);
-            TEST_ASSERT_TRUE(torque > 1.0 - 1e-6);
+            TEST_ASSERT_TRUE(worst_share(1e6).torque > 1.0 - 1e-6);
             continue;
         }
-        const double worst = fmax(worst_share(timing.duration, &torque), 0.0);
-        TEST_ASSERT_TRUE(fmax(worst, torque) <= 1.0 + 1e-8 && fmax(worst, torque) >= 1.0 - 1e-5);
+        const drawn_share shares = worst_share(timing.duration);
+        const double worst = fmax(shares.motion, shares.torque);
+        TEST_ASSERT_TRUE(worst <= 1.0 + 1e-8 && worst >= 1.0 - 1e-5);
         held++;
     }
     TEST_ASSERT_TRUE(held > 20);
