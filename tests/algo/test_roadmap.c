@@ -2,6 +2,7 @@
 // built anew. Spaces of two dimensions among boxes, the same with one-way boxes, and three dimensions with an angle.
 #include "algo/roadmap.h" // first: proves that the header stands alone
 
+#include "cases.h"
 #include "unity.h"
 
 #include <math.h>
@@ -465,7 +466,7 @@ static void test_a_repaired_roadmap_is_one_built_anew(void) {
 static void test_a_lazy_repair_leaves_nothing_known_that_is_not_so(void) {
     make_hall(2, 77);
     build(&map, 0, lazy);
-    for (int change = 0; change < 20; change++) {
+    for (int change = 0; change < CASES(20); change++) {
         double a[2], b[2];
         const int i = (int)(draw() * BOXES);
         hall.is_there[i] = !hall.is_there[i];

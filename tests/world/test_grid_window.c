@@ -106,12 +106,12 @@ static void test_any_edit_of_small_lattices_gives_the_field_of_a_fresh_build(voi
 }
 
 static void test_any_edit_of_wide_open_lattices_does(void) {
-    check_edits(410, 700, 900, 0, 25);
-    check_edits(411, 1000, 700, 3, 25);
-    check_edits(412, 1000, 1000, 30, 25);
-    check_edits(413, 900, 1000, 1000, 25);
-    check_edits(414, 3000, 300, 20, 25);
-    check_edits(415, 300, 3000, 20, 25);
+    check_edits(410, 700, 900, 0, CASES(25U));
+    check_edits(411, 1000, 700, 3, CASES(25U));
+    check_edits(412, 1000, 1000, 30, CASES(25U));
+    check_edits(413, 900, 1000, 1000, CASES(25U));
+    check_edits(414, 3000, 300, 20, CASES(25U));
+    check_edits(415, 300, 3000, 20, CASES(25U));
 }
 
 static void test_pieces_of_the_greatest_size_do(void) {

@@ -25,7 +25,9 @@ build_variant() { # preset, or name compiler flags...
         cmake -G Ninja -S . -B "build/det-$name" -DCMAKE_BUILD_TYPE=None -DCMAKE_C_COMPILER="$2" \
             -DCMAKE_C_FLAGS="${*:3}" -DAISLE_BUILD_TESTS=OFF -DAISLE_BUILD_JAVA=OFF >/dev/null
     fi
-    cmake --build "$(folder_of "$name")" --parallel "$(nproc)" --target aisle-replay >"$work/build-$name.txt" 2>&1 || {
+    local targets=(aisle-replay)
+    [ "$name" != release ] || targets+=(aisle-sim) # it drives for a log
+    cmake --build "$(folder_of "$name")" --parallel "$(nproc)" --target "${targets[@]}" >"$work/build-$name.txt" 2>&1 || {
         cat "$work/build-$name.txt" && return 1
     }
 }
@@ -35,8 +37,6 @@ drive_log() { # a vehicle that is driven among people: re-paced, stopped, sent r
     "$aisle" map --log "$start" "$scenario"
     "$aisle" vehicle --log "$start" --footprint 1.0x0.7 --margin 0.1
     "$aisle" goal --log "$start" --goal 48,48 --pose 2,2,0.7
-    cmake --preset release >/dev/null
-    cmake --build --preset release --target aisle-sim >/dev/null
     build/release/aisle-sim "$start" --movers person:4,adversarial:1 --seed 1 --time 45 --out "$work/drive.log" || true # not there yet: 1
     [ -s "$work/drive.log" ]
 }
@@ -76,11 +76,16 @@ replay() { # variant run: checksums of the outputs of all logs on stdout
 
 rm -rf "$work"
 mkdir -p "$work"
-make_logs
-failed=0
+build_variant release
+make_logs & # beside the other builds
+logs=$!
 for variant in "${variants[@]}"; do
     # shellcheck disable=SC2086 # several words
-    build_variant $variant
+    [ "$variant" = release ] || build_variant $variant
+done
+wait "$logs"
+failed=0
+for variant in "${variants[@]}"; do
     name=${variant%% *}
     replay "$name" 1 >"$work/sums.$name.1" &
     first=$!
