@@ -141,7 +141,7 @@ static uint32_t bound(aisle_pace *self, const knots *path, double cap, double le
     const aisle_verify_base *base = self->request.base;
     double s = 0.0;
     uint32_t on_base = 0;
-    self->most[0] = (float)cap;
+    self->most[0] = cap < AISLE_VEHICLE_SPEED_MAX ? aisle_float_below(cap) : INFINITY;
     for (uint32_t i = 1; i < path->n; i++) {
         double most = s < length ? cap : (double)INFINITY;
         on_base = base != NULL && s < base->reach - BASE_END ? i : on_base;

@@ -449,6 +449,24 @@ static void test_one_that_has_not_quite_come_to_rest_where_a_turn_begins_goes_on
     }
 }
 
+// A long piece with one slow end would be driven slowly all along.
+static void test_from_rest_a_slow_level_is_at_its_speed_as_soon_as_it_can_be(void) {
+    (void)add(0.0, 0.0, 0.0);
+    (void)add(4.0, 0.0, 0.0);
+    (void)add(60.0, 0.0, 0.0);
+    fill_way();
+    for (uint32_t level = 1; level < AISLE_PACE_STOP; level++) {
+        aisle_pace_request request = request_at((aisle_place){1, 0.0}, 0.0);
+        request.first = level;
+        TEST_ASSERT_EQUAL_INT(AISLE_OK, run(&request, &out));
+        const double cap = aisle_pace_cap(&vehicle, level), up = cap * cap / (2.0 * vehicle.a_max);
+        TEST_ASSERT_TRUE(out.num_waypoints > 2);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, cap, out.waypoints[1].v);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, up, out.waypoints[1].s);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3, cap / vehicle.a_max, out.waypoints[1].t);
+    }
+}
+
 static void test_a_faster_level_than_the_present_one_must_hold_longer(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(60.0, 1.0);
@@ -568,6 +586,7 @@ int main(void) {
     RUN_TEST(test_a_stop_ends_where_the_brakes_end_it);
     RUN_TEST(test_a_turn_that_is_stopped_ends_within_the_turn);
     RUN_TEST(test_one_that_has_not_quite_come_to_rest_where_a_turn_begins_goes_on);
+    RUN_TEST(test_from_rest_a_slow_level_is_at_its_speed_as_soon_as_it_can_be);
     RUN_TEST(test_a_faster_level_than_the_present_one_must_hold_longer);
     RUN_TEST(test_it_names_the_mover_that_slows_it_and_none_if_none_does);
     RUN_TEST(test_a_vehicle_at_rest_beside_a_mover_stays_whatever_is_left_of_its_wait);
