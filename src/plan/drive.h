@@ -36,8 +36,8 @@
 #include "world/movers.h"
 
 #define AISLE_DRIVE_SPEED_UP_US 150000
-#define AISLE_DRIVE_PACE_LEASE 1.3  // shortest leases; new speeds are safe for so long, to stay so for a while
-#define AISLE_DRIVE_START_LEASE 1.6 // the same of a vehicle at rest: no creeping up to what it waits for
+#define AISLE_DRIVE_PACE_LEASE 1.6  // shortest leases; new speeds are safe for so long, to stay so for a while
+#define AISLE_DRIVE_START_LEASE 2.5 // the same of a vehicle at rest: no creeping up to what it waits for
 #define AISLE_DRIVE_OFF 0.05        // m
 #define AISLE_DRIVE_OFF_HEADING 0.2 // rad
 

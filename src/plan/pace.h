@@ -41,7 +41,7 @@
 #define AISLE_PACE_SPARE 0.01   // m, beyond the margin
 #define AISLE_PACE_LAG 0.12     // s, later than the path says: AISLE_DRIVE_LAG and some to spare
 #define AISLE_PACE_LATENCY 0.1  // s, from a decision to the vehicle's doing
-#define AISLE_PACE_HOLD 1.6     // of a lease, for going faster
+#define AISLE_PACE_HOLD 1.4     // of a lease, for going faster
 #define AISLE_PACE_RESTING 0.01 // m/s; slower is at rest
 
 typedef struct aisle_pace_request {

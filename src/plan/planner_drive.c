@@ -9,6 +9,7 @@
 #define TRIES_MAX 4U                // at leaving the path under way, before the vehicle is stopped for it
 #define PATIENCE_US 4000000         // of a vehicle that hardly gets on, before it looks for a way round
 #define PATIENCE_STANDING_US 500000 // the same of what stands
+#define SWIFT_US 1000000            // without a hindrance, after which it counts as over
 #define NO_END 240.0                // s, counted for a wait without an end in sight
 #define LOOK_ROUND_US 500000        // between two looks whether going round is worth it
 #define LOOK_ROUND_MAX_US 8000000   // after looks that were in vain, each twice as long as the one before
@@ -242,7 +243,9 @@ static bool stands(const aisle_planner *self, int32_t id) {
 static void weigh_waiting(aisle_planner *self) {
     const aisle_drive *drive = &self->drive;
     const bool yields = drive->why.cause == AISLE_STATUS_YIELDING;
-    if (!yields || (drive->v > 0.5 * self->vehicle.creep_speed && !stands(self, drive->why.id))) {
+    if (yields && (drive->v <= 0.5 * self->vehicle.creep_speed || stands(self, drive->why.id))) {
+        self->hindered_us = self->now_us;
+    } else if (self->now_us - self->hindered_us >= SWIFT_US) {
         self->swift_us = self->now_us;
         self->look_us = LOOK_ROUND_US;
     }

@@ -74,7 +74,8 @@ struct aisle_planner {
     double wait_s;              // to the next goal by the plan, as weighed last
     int64_t looked_us;          // when that was begun
     int64_t look_us;            // how long until it may be again
-    int64_t swift_us;           // when the vehicle was last faster than its creep speed, or was sent off
+    int64_t hindered_us;        // when it was last slow for what moves, or slowed for what stands
+    int64_t swift_us;           // when it had last not been so for a while
     int32_t command_id;
     aisle_request *queue; // [limits.requests] ring
     uint32_t queue_head, queue_count;

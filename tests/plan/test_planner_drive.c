@@ -224,9 +224,9 @@ static void test_no_lease_is_shorter_than_the_shortest_and_who_takes_short_ones_
         TEST_ASSERT_TRUE(gap > nearer);
         nearer = gap;
     }
-    const double usual = wait_before_a_person(0.125F);
+    const double usual = wait_before_a_person(0.0625F);
     TEST_ASSERT_EQUAL_DOUBLE(usual, wait_before_a_person(0.0F));
-    TEST_ASSERT_TRUE(shortest_told >= 125000 && shortest_told < 250000);
+    TEST_ASSERT_TRUE(shortest_told >= 62500 && shortest_told < 125000);
 }
 
 static void test_at_rest_it_is_told_once_that_it_yields_whoever_is_nearest(void) {

@@ -44,7 +44,7 @@ from aisle_tools import names, vehicle
 
 EPOCH_US = 1600000000000000  # of aisle-sim's clock
 TIME_LIMIT = 180.0  # s of a drive
-WARY = 0.425  # s: latency and lag of the drives 0.1 each, the shortest lease 0.125, age of what is known 0.1
+WARY = 0.3625  # s: latency and lag of the drives 0.1 each, the shortest lease 0.0625, age of what is known 0.1
 WARY_RADIUS = 0.09  # m: three deviations of a mover's place
 USUAL_BOUND = {obstacle_t.PERSON: 1.6, obstacle_t.STATIC: 0.0}  # m/s, where none is told
 SUM = ("drives", "encounters", "collisions", "hall", "at_rest", "arrived", "possible", "undecided", "replans", "stops")
@@ -171,7 +171,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--objective", default="safest", metavar="O", help="of the goals but in hall drawn")
     parser.add_argument("--no-oracle", action="store_true")
     parser.add_argument("--time", type=float, default=TIME_LIMIT, metavar="S", help="of a drive, default 180")
-    parser.add_argument("--wary", type=float, default=WARY, metavar="S", help="delays of the wary oracle, default 0.425")
+    parser.add_argument("--wary", type=float, default=WARY, metavar="S", help="delays of the wary oracle, default 0.3625")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="drives at once; more make milliseconds worse")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="logs, truths and figures of the drives")
     parser.add_argument("--failures", type=Path, metavar="FILE", help="a line each, too")
