@@ -138,14 +138,22 @@ void tearDown(void) {}
 
 // ---- tests
 
+// Is the i-th of so many cases among those that are to be looked at? They lie apart; `all` has no factor 7.
+static bool is_drawn(int i, int all) {
+    return i * 7 % all < OF_ALL(all);
+}
+
 static void test_from_aisle_to_aisle_by_every_heading_and_drive(void) {
     static const float curvature[2] = {0.0F, 0.6666F};
-    int found = 0, asked = 0;
+    int found = 0, asked = 0, seen = 0;
     for (int drive = 0; drive < 2; drive++) {
         for (double aisle = 1.2; aisle < 3.1; aisle += 0.6) {
             forklift(curvature[drive]);
             rack_hall(aisle);
             for (int k = 0; k < 6; k++) {
+                if (!is_drawn(seen++, 48)) {
+                    continue;
+                }
                 double theta = k % 2 == 0 ? 0.5 * PI : -0.5 * PI;
                 aisle_manoeuvre_request request =
                     request_of(in_aisle(0, aisle, 7.0, theta), in_aisle(2, aisle, 7.0, k < 2 ? -theta : theta));
@@ -158,8 +166,9 @@ static void test_from_aisle_to_aisle_by_every_heading_and_drive(void) {
             }
         }
     }
-    TEST_ASSERT_EQUAL(48, asked);
-    TEST_ASSERT_EQUAL(48, found);
+    TEST_ASSERT_EQUAL(48, seen);
+    TEST_ASSERT_EQUAL(OF_ALL(48), asked);
+    TEST_ASSERT_EQUAL(asked, found);
 }
 
 static void test_out_of_a_dead_end_it_goes_backwards_and_only_there(void) {
@@ -205,6 +214,9 @@ static void test_directed_zones_are_obeyed_by_every_drive(void) {
     static const double aisles[3] = {1.3, 1.7, 2.6};
     int found = 0;
     for (int k = 0; k < 16; k++) {
+        if (!is_drawn(k, 16)) {
+            continue;
+        }
         const double aisle = aisles[k % 3], out = k % 2 == 0 ? 0.5 * PI : -0.5 * PI, in = k % 4 < 2 ? out : -out;
         forklift(k < 8 ? 0.0F : 0.6666F);
         rack_hall(aisle);
@@ -218,7 +230,7 @@ static void test_directed_zones_are_obeyed_by_every_drive(void) {
             found++;
         }
     }
-    TEST_ASSERT_EQUAL(16, found);
+    TEST_ASSERT_EQUAL(OF_ALL(16), found);
 }
 
 // Metres driven whose gap is below `clear`, by the judge's own gaps 5 cm apart; turns on the spot count nothing.

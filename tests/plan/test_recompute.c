@@ -269,7 +269,7 @@ static void judge_scenario(const char *file, float margin, int first) {
     open_door();
     layout = floor_plan;
     TEST_ASSERT_EQUAL(AISLE_OK, send_layout());
-    for (int k = 0; k < CASES(OBJECTIVES); k++) {
+    for (int k = 0; k < OF_ALL(OBJECTIVES); k++) {
         query.options.objective = (int8_t)((first + k) % OBJECTIVES);
         query.query_id = query.options.objective + 1;
         if (ask()) {
@@ -293,7 +293,7 @@ static void test_paths_of_every_scenario_are_what_they_say_by_every_objective(vo
         }
     }
     TEST_ASSERT_EQUAL(17, found.gl_pathc);
-    TEST_ASSERT_TRUE(scenario_paths >= (16 + 13) * CASES(OBJECTIVES)); // with the margin all but the narrowest three
+    TEST_ASSERT_TRUE(scenario_paths >= (16 + 13) * OF_ALL(OBJECTIVES)); // with the margin all but the narrowest three
     globfree(&found);
 }
 

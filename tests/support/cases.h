@@ -8,5 +8,6 @@
 #define AISLE_TEST_CASES 100
 #endif
 #define CASES(named) (((named)*AISLE_TEST_CASES + 99) / 100)
-#define LEAST(named) ((named)*AISLE_TEST_CASES / 100) // rounded down: what few cases may lack
+#define LEAST(named) ((named)*AISLE_TEST_CASES / 100)                   // rounded down: what few cases may lack
+#define OF_ALL(cases) (CASES(cases) < (cases) ? CASES(cases) : (cases)) // of cases that are listed, not drawn
 #endif
