@@ -197,8 +197,8 @@ def state(browser):
 
 
 def move_slider(browser, t):
-    browser.js(f"document.getElementById('slider').value = {t}")
-    browser.js("document.getElementById('slider').dispatchEvent(new Event('input'))")
+    # In one go: a frame between the two would put the slider back.
+    browser.js(f"((s) => {{ s.value = {t}; s.dispatchEvent(new Event('input')) }})(document.getElementById('slider'))")
     return state(browser)
 
 
