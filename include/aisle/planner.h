@@ -66,7 +66,7 @@ extern "C" {
 #define AISLE_PROTOCOL 1                           // status_msg.protocol
 #define AISLE_LEASE_US 1000000                     // a path is valid so long after each sending at most
 #define AISLE_LEASE_RESEND_US (AISLE_LEASE_US / 2) // and sent again so often; sooner where the lease is shorter
-#define AISLE_LEASE_SHORTEST 0.0625F                // s, a path that is safe for less is not sent
+#define AISLE_LEASE_SHORTEST 0.0625F               // s, a path that is safe for less is not sent
 #define AISLE_WORK_UNITS_DEFAULT 5000000
 #define AISLE_PLANNER_ALIGN 64 // bytes, of the block
 
