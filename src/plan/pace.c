@@ -335,6 +335,17 @@ static void give_way(aisle_pace *self) {
     self->phase = AISLE_PACE_LEVEL;
 }
 
+// A level cannot be made. Of what is under way and comes to rest a bit further on, the speeds there, which none may pass, are
+// so low that any would take for ever: it goes on to there.
+static void fail(aisle_pace *self, aisle_status st) {
+    if (self->request.base != NULL) {
+        self->level = AISLE_PACE_STOP;
+        self->phase = AISLE_PACE_LEVEL;
+    } else {
+        end(self, st);
+    }
+}
+
 static void step_level(aisle_pace *self, uint32_t *spent) {
     if (self->level == AISLE_PACE_STOP) {
         end(self, stop(self));
@@ -344,7 +355,7 @@ static void step_level(aisle_pace *self, uint32_t *spent) {
     self->mover = 0;
     self->phase = AISLE_PACE_MOVERS;
     if (st != AISLE_OK) {
-        end(self, st);
+        fail(self, st);
     } else if (self->band.overflow) {
         give_way(self);
     }
@@ -365,7 +376,12 @@ static void step_mover(aisle_pace *self, uint32_t *spent) {
         knots path = whole_path(self);
         const double cap = aisle_pace_cap(request->vehicle, self->level);
         *spent += self->n / 8U;
-        end(self, finish(self, &path, cap, reach_of(self, cap)));
+        const aisle_status st = finish(self, &path, cap, reach_of(self, cap));
+        if (st == AISLE_OK) {
+            end(self, st);
+        } else {
+            fail(self, st);
+        }
         return;
     }
     const aisle_mover *mover = &request->movers->mover[self->mover++];

@@ -106,7 +106,8 @@ void aisle_pace_start(aisle_pace *self, const aisle_pace_request *request, aisle
 //               the next faster level that was tried, if one was
 // AISLE_PARTIAL likewise for AISLE_PACE_STOP: the path ends where the vehicle comes to rest. It has not been looked at
 //               whether that is safe: it is the least there is
-// AISLE_ERR_CAPACITY  the path has no room for the waypoints where speeds change
+// AISLE_ERR_CAPACITY  the path has no room for the waypoints where speeds change, or lasts too long; where something is under
+//               way AISLE_PACE_STOP is taken instead
 // However cut into steps, answer and units are the same.
 aisle_status aisle_pace_step(aisle_pace *self, uint32_t units, uint32_t *spent);
 #endif

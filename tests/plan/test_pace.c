@@ -353,6 +353,30 @@ static void test_paths_under_way_are_taken_over_on_their_base_however_the_level_
     TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), faster);
 }
 
+// Its pose may still tell a rate of turning, so that something is under way, and what that has left is as good as rest.
+static void test_one_nearly_at_rest_before_the_end_of_what_is_under_way_goes_on_or_rests_there(void) {
+    uint32_t looked = 0;
+    for (uint64_t seed = 0; seed < CASES(400); seed++) {
+        aisle_pace_request request = random_request_without_rests(seed);
+        request.first = AISLE_PACE_STOP;
+        if (run(&request, &out) != AISLE_PARTIAL || out.num_waypoints < 2) {
+            continue;
+        }
+        double v;
+        aisle_place at;
+        const aisle_verify_base base = base_at((double)out.duration * (1.0 - 0.0005 * (double)seed), &v, &at);
+        request.at = aisle_motion_advance(path, count, request.at, aisle_motion_length_to(under_way, base.n, at));
+        request.base = &base;
+        request.v = 0.005;
+        request.first = (uint32_t)(seed % AISLE_PACE_STOP);
+        const aisle_status st = run(&request, &out);
+        TEST_ASSERT_TRUE(st == AISLE_OK || st == AISLE_PARTIAL);
+        request.base = NULL;
+        looked++;
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(CASES(100), looked);
+}
+
 static void test_from_a_stop_it_gets_up_to_speed_though_each_path_keeps_the_base_of_the_one_before(void) {
     (void)add(0.0, 0.0, 0.0);
     add_line(60.0, 2.0);
@@ -580,6 +604,7 @@ int main(void) {
     RUN_TEST(test_its_paths_are_proved_at_every_level);
     RUN_TEST(test_what_it_takes_is_proved_for_1500_of_1500_cases);
     RUN_TEST(test_paths_under_way_are_taken_over_on_their_base_however_the_level_changes);
+    RUN_TEST(test_one_nearly_at_rest_before_the_end_of_what_is_under_way_goes_on_or_rests_there);
     RUN_TEST(test_from_a_stop_it_gets_up_to_speed_though_each_path_keeps_the_base_of_the_one_before);
     RUN_TEST(test_caps_fall_from_level_to_level);
     RUN_TEST(test_a_capped_path_is_slow_as_far_as_the_lease_reaches_and_fast_behind);
