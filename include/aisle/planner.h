@@ -81,8 +81,8 @@ typedef struct aisle_config {
     bool has_vehicle;
     bool skip_unreachable; // goals of a list that are proved to be out of reach (NO_PATH, TOO_NARROW, GOAL_OCCUPIED,
                            // GOAL_OUTSIDE), if others are not
-    // s, [0.05, 1]; 0 = AISLE_LEASE_SHORTEST. A shorter one lets the vehicle drive nearer to what moves, but one that hears of a
-    // renewal later than after half of it brakes in between.
+    // s, [0.05, 1]; 0 = AISLE_LEASE_SHORTEST. A shorter one lets the vehicle drive nearer to what moves, but one that hears
+    // of a renewal later than after half of it brakes in between.
     float shortest_lease;
     bool
         forgetful; // remember no answers: every request is planned anew (for benches; the memory is there all the same)

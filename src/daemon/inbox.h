@@ -73,8 +73,8 @@ typedef struct aisle_inbox_message {
 // ring: aligned to 8, at least 2 * AISLE_MSG_DATAGRAM_MAX bytes; the caller's as long as the inbox.
 void aisle_inbox_init(aisle_inbox *self, void *ring, size_t capacity);
 
-// Takes a copy. channel: an input. at_us: when it arrived, by any clock; kept for the caller. AISLE_ERR_DATA: longer than AISLE_MSG_DATAGRAM_MAX (bytes are not looked at).
-// AISLE_ERR_CAPACITY: no room, counted in dropped.
+// Takes a copy. channel: an input. at_us: when it arrived, by any clock; kept for the caller. AISLE_ERR_DATA: longer than
+// AISLE_MSG_DATAGRAM_MAX (bytes are not looked at). AISLE_ERR_CAPACITY: no room, counted in dropped.
 aisle_status aisle_inbox_put(aisle_inbox *self, aisle_channel channel, int64_t at_us, const void *bytes, size_t size);
 
 // The next message in order, which stays until pop(). False: empty.

@@ -23,8 +23,8 @@
 // reached (mission.h), so that a path under way names it still; one that has gone on over it all the same, farther than its
 // tolerance and AISLE_DRIVE_OFF, is off the path, too, for no proof sees it where it is.
 //
-// Memory: carved, four decoded paths, two encoded ones and pace.h's (0.5 MiB). Time: sliced; a cycle is at most
-// AISLE_PACE_LEVELS times pace and moving proof, and two static proofs.
+// Memory: carved, four decoded paths, two encoded ones, pace.h's and 16 KiB of pieces known (0.5 MiB). Time: sliced; a cycle
+// is at most AISLE_PACE_LEVELS times pace and moving proof, and two static proofs.
 #ifndef AISLE_PLAN_DRIVE_H
 #define AISLE_PLAN_DRIVE_H
 
@@ -91,8 +91,7 @@ typedef struct aisle_drive {
     aisle_off off;              // from the path, by the last pose
     bool is_off, is_resting;    // by the last pose
     aisle_refusal why;          // what slows what is out or stops it; cause 0: nothing
-
-    double shortest_lease; // s, a path is sent for no less; AISLE_LEASE_SHORTEST after carve()
+    double shortest_lease;      // s, a path is sent for no less; AISLE_LEASE_SHORTEST after carve()
 
     // of the cycle
     aisle_drive_stage stage;

@@ -335,10 +335,10 @@ static void give_way(aisle_pace *self) {
     self->phase = AISLE_PACE_LEVEL;
 }
 
-// A level cannot be made. Of what is under way and comes to rest a bit further on, the speeds there, which none may pass, are
-// so low that any would take for ever: it goes on to there.
-static void fail(aisle_pace *self, aisle_status st) {
-    if (self->request.base != NULL) {
+// With a level that is made, or cannot be. Then what is under way is stopped: there is no room for a path, or it comes to
+// rest a bit further on and the speeds there, which none may pass, are so low that any path would take for ever.
+static void conclude(aisle_pace *self, aisle_status st) {
+    if (st != AISLE_OK && self->request.base != NULL) {
         self->level = AISLE_PACE_STOP;
         self->phase = AISLE_PACE_LEVEL;
     } else {
@@ -355,7 +355,7 @@ static void step_level(aisle_pace *self, uint32_t *spent) {
     self->mover = 0;
     self->phase = AISLE_PACE_MOVERS;
     if (st != AISLE_OK) {
-        fail(self, st);
+        conclude(self, st);
     } else if (self->band.overflow) {
         give_way(self);
     }
@@ -376,12 +376,7 @@ static void step_mover(aisle_pace *self, uint32_t *spent) {
         knots path = whole_path(self);
         const double cap = aisle_pace_cap(request->vehicle, self->level);
         *spent += self->n / 8U;
-        const aisle_status st = finish(self, &path, cap, reach_of(self, cap));
-        if (st == AISLE_OK) {
-            end(self, st);
-        } else {
-            fail(self, st);
-        }
+        conclude(self, finish(self, &path, cap, reach_of(self, cap)));
         return;
     }
     const aisle_mover *mover = &request->movers->mover[self->mover++];

@@ -37,6 +37,7 @@ static const char help[] =
     "  --script LOG    goal lists, commands, layouts and patches for later: an event's time after the log's first one "
     "is\n"
     "                  its time after the goals\n"
+    "  --late S        paths are so much longer under way to the vehicle, beside 10 to 20 ms\n"
     "  --units-per-ms N  planning takes time: so many work units a millisecond; 4000 are about a desktop core\n"
     "  --bus URL       aisled on this LCM bus plans, in real time; \"\" is LCM's default\n"
     "  --out FILE      an LCM log of all that went in and came out, for aisle-replay --check\n"
@@ -47,7 +48,7 @@ static const char help[] =
     "Ends with 0: arrived without a collision; 1: not so, or trouble; 2: wrong options or settings.\n";
 
 typedef struct arguments {
-    const char *script, *units, *faults, *bus, *drawn, *batch, *kind, *count, *drives;
+    const char *script, *units, *late, *faults, *bus, *drawn, *batch, *kind, *count, *drives;
     bool told, blind;
     const char *log, *movers, *tracks, *place, *seed, *time, *room, *sources, *out, *json, *truth, *prefix, *config;
     bool version, help;
@@ -89,9 +90,9 @@ static bool parse(arguments *out, int argc, char **argv, char *message) {
         {"--kind", NULL, &out->kind},       {"--count", NULL, &out->count},
         {"--drives", NULL, &out->drives},   {"--bus", NULL, &out->bus},
         {"--script", NULL, &out->script},   {"--units-per-ms", NULL, &out->units},
-        {"--faults", NULL, &out->faults},   {"--told", &out->told, NULL},
-        {"--blind", &out->blind, NULL},     {"--version", &out->version, NULL},
-        {"--help", &out->help, NULL},
+        {"--late", NULL, &out->late},       {"--faults", NULL, &out->faults},
+        {"--told", &out->told, NULL},       {"--blind", &out->blind, NULL},
+        {"--version", &out->version, NULL}, {"--help", &out->help, NULL},
     };
     size_t plain = 0;
     return aisle_options_parse(options, sizeof options / sizeof options[0], argc, argv, &out->log, 1, &plain, message);
@@ -199,7 +200,7 @@ static int draw_one(const arguments *given) {
 }
 
 static int read_setup(const arguments *given) {
-    double sources = 1.0;
+    double sources = 1.0, late = 0.0;
     uint64_t seed = 1;
     if (given->drawn != NULL) {
         return draw_one(given);
@@ -209,9 +210,12 @@ static int read_setup(const arguments *given) {
     }
     tool.setup = aisle_sim_setup_usual(seed);
     if (!read_number(given->time, 0.0, 1e5, &tool.setup.time_limit) ||
-        !read_number(given->room, 0.0, 1e3, &tool.setup.room) || !read_number(given->sources, 1.0, 4.0, &sources)) {
-        return complain(EXIT_USAGE, "--time, --room or --sources is out of range; see --help", NULL);
+        !read_number(given->room, 0.0, 1e3, &tool.setup.room) || !read_number(given->sources, 1.0, 4.0, &sources) ||
+        !read_number(given->late, 0.0, 1.0, &late)) {
+        return complain(EXIT_USAGE, "--time, --room, --sources or --late is out of range; see --help", NULL);
     }
+    tool.setup.path_delay.least += late;
+    tool.setup.path_delay.most += late;
     tool.setup.num_sources = given->blind ? 0 : (int32_t)sources;
     if (!read_movers(given->movers, &tool.setup)) {
         return complain(EXIT_USAGE, "not KIND:COUNT[:V_BOUND],...; see --help", "--movers");

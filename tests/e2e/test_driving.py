@@ -210,6 +210,30 @@ def test_restart_shows_a_new_boot_id_and_needs_the_map_again(ready):
     assert status.map_revision == 0 and status.goal_list_id == 0 and status.cause == status_t.NO_LAYOUT
 
 
+def test_after_a_restart_a_vehicle_under_way_goes_on_when_all_is_sent_again(ready, data):
+    daemon, driver, _ = ready
+    driver.spin(0.3)
+    daemon.bus.publish("GOALS", goal_list(1, (19.0, 19.0)))
+    assert driver.spin(30.0, lambda: has_path(daemon))
+    until = max(p.valid_until_utime for _, p in daemon.paths)
+    daemon.process.kill()
+    daemon.process.wait()
+    driver.pose = (2.0, 2.0, 0.78)  # where it came to rest when the lease ran out
+    driver.spin(1.2)
+    assert now_us() > until
+    boot = daemon.start().boot_id
+    path = data / "scenarios" / "field_12_disc.json"
+    daemon.aisle("map", path)
+    daemon.aisle("vehicle", "--scenario", path)
+    driver.spin(0.3)
+    daemon.paths.clear()
+    daemon.bus.publish("GOALS", goal_list(1, (19.0, 19.0)))
+    assert driver.spin(30.0, lambda: has_path(daemon))
+    anew = next(p for _, p in daemon.paths if p.status == path_t.OK)
+    assert anew.boot_id == boot
+    assert (anew.waypoints[0].x, anew.waypoints[0].y) == pytest.approx((2.0, 2.0), abs=1e-6)
+
+
 @pytest.mark.parametrize("with_signal", [signal.SIGTERM, signal.SIGINT])
 def test_ends_clean_on_a_signal(ready, with_signal):
     daemon, driver, _ = ready

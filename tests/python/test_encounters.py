@@ -53,7 +53,7 @@ def test_walls_have_doors_and_aisles_their_width() -> None:
 
 def outcome(sim: dict, known: encounters.Best = encounters.Best("found", 20.0, 15.0)) -> encounters.Outcome:
     base = {"arrived": True, "arrival": 40.0, "encounters": 3, "collisions": 0, "hall_collisions": 0}
-    base |= {"contacts_at_rest": 1, "revisions": 9, "stops": 0, "time": 33.0, "optimum": 17.0}
+    base |= {"contacts_at_rest": 1, "revisions": 9, "stops": 0, "lapses": 0, "seconds": 60.0, "time": 33.0, "optimum": 17.0}
     base |= {"work_ms": {"p50": 0.1, "p99": 1.0, "max": 9.0}}
     base |= {"visited": 0, "goals": 1, "paths": [], "seconds": 60.0}
     return encounters.Outcome(halls.draw("open", "person", 1), base | sim, known)

@@ -151,6 +151,21 @@ def test_a_drawn_drive_of_a_slow_planner_leaves_a_record(tmp_path):
 
 
 @needs_program
+def test_leases_lapse_where_paths_are_long_under_way_and_nobody_is_hit(tmp_path, scenario):
+    out = tmp_path / "run"
+    cli.main(["sim", "--scenario", str(scenario), "--out", str(out), "--programs", str(SIM.parent), "--margin", "0.1"])
+    lapses = []
+    for late in ("0", "0.05"):
+        words = ("--movers", "person:8", "--seed", "4", "--time", "60", "--late", late, "--json", str(tmp_path / "s.json"))
+        done = run_program(str(out / "setup.log"), *words)
+        assert done.returncode in (0, 1) and done.stderr == ""
+        figures = json.loads((tmp_path / "s.json").read_text())
+        assert figures["collisions"] == 0 and figures["way"] > 1.0
+        lapses.append(figures["lapses"])
+    assert lapses[0] == 0 < lapses[1]
+
+
+@needs_program
 @pytest.mark.parametrize(
     "words",
     [
@@ -163,6 +178,7 @@ def test_a_drawn_drive_of_a_slow_planner_leaves_a_record(tmp_path):
         ["--batch", "1", "--drives", "-1"],
         ["--batch", "1", "--units-per-ms", "x"],
         ["x.log", "--faults", "flood:1:1"],
+        ["x.log", "--late", "-0.1"],
         ["x.log", "--nonsense"],
     ],
 )

@@ -11,7 +11,8 @@ them. "/ oracle": time over the oracle's, median and 95th percentile of the driv
 that of the way without movers as planned, and what the oracle loses by them: its time with them less its time without,
 since its lattice costs both the same. "/ wary": over an oracle with Aisle's delays (--wary s more of reaction time,
 movers 0.09 m wider); "raw": over the oracle's own time, lattice and all. "/ alone": over the way's time without movers.
-Replans: new revisions of the path; stops: rests the first path did not have. ms: of the work of each input and
+Replans: new revisions of the path; stops: rests the first path did not have; lapses: of a lease, under way (all drives);
+s: a drive's time, arrived or not. ms: of the work of each input and
 deadline, by the clock, p50 and p99 in the median drive, and the worst of all.
 Hall "drawn": what `aisle-sim --drawn SEED` draws, 120 s a drive.
 Movers of kind adversarial follow the vehicle: to the oracle they come where the vehicle drove, so for them its figures
@@ -47,7 +48,20 @@ TIME_LIMIT = 180.0  # s of a drive
 WARY = 0.3625  # s: latency and lag of the drives 0.1 each, the shortest lease 0.0625, age of what is known 0.1
 WARY_RADIUS = 0.09  # m: three deviations of a mover's place
 USUAL_BOUND = {obstacle_t.PERSON: 1.6, obstacle_t.STATIC: 0.0}  # m/s, where none is told
-SUM = ("drives", "encounters", "collisions", "hall", "at_rest", "arrived", "possible", "undecided", "replans", "stops")
+SUM = (
+    "drives",
+    "encounters",
+    "collisions",
+    "hall",
+    "at_rest",
+    "arrived",
+    "possible",
+    "undecided",
+    "replans",
+    "stops",
+    "lapses",
+    "seconds",
+)
 LISTS = ("over_oracle", "over_wary", "over_raw", "over_alone", "p50", "p99")
 
 
@@ -101,8 +115,9 @@ class Row:
         sim = outcome.sim
         counts = (1, sim["encounters"], sim["collisions"], sim["hall_collisions"], sim["contacts_at_rest"])
         verdicts = (outcome.arrived, outcome.possible, outcome.known.verdict == "undecided" and not outcome.arrived)
-        for key, value in zip(SUM, (*counts, *verdicts, sim["revisions"], sim["stops"])):
-            self.sums[key] += int(value)
+        driven = (sim["revisions"], sim["stops"], sim["lapses"], sim["seconds"])
+        for key, value in zip(SUM, (*counts, *verdicts, *driven)):
+            self.sums[key] += value
         if outcome.arrived:
             self.over_alone.append(sim["time"] / sim["optimum"])
         ratios = (outcome.over(outcome.known), outcome.over(outcome.wary), outcome.over_raw)
@@ -133,6 +148,7 @@ class Row:
             "over_alone_median": share_of(self.over_alone, 0.5),
             "replans_mean": self.sums["replans"] / max(self.sums["drives"], 1),
             "stops_mean": self.sums["stops"] / max(self.sums["drives"], 1),
+            "seconds_mean": self.sums["seconds"] / max(self.sums["drives"], 1),
             "ms_p50": share_of(self.p50, 0.5),
             "ms_p99": share_of(self.p99, 0.5),
             "ms_max": self.worst_ms,
@@ -171,6 +187,8 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--objective", default="safest", metavar="O", help="of the goals but in hall drawn")
     parser.add_argument("--no-oracle", action="store_true")
     parser.add_argument("--time", type=float, default=TIME_LIMIT, metavar="S", help="of a drive, default 180")
+    parser.add_argument("--late", type=float, default=0.0, metavar="S", help="that paths are longer under way")
+    parser.add_argument("--config", type=Path, metavar="FILE", help="settings of aisled")
     parser.add_argument("--wary", type=float, default=WARY, metavar="S", help="delays of the wary oracle, default 0.3625")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="drives at once; more make milliseconds worse")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="logs, truths and figures of the drives")
@@ -203,7 +221,8 @@ def simulate(args: argparse.Namespace, drive: halls.Drive, folder: Path) -> dict
     else:
         objective = names.option_value(args.objective, names.OBJECTIVES)
         halls.write_log(drive, folder / "setup.log", offline.PREFIX, objective)
-        words += [folder / "setup.log", "--movers", drive.movers_option, "--seed", drive.seed, "--time", args.time]
+        words += [folder / "setup.log", "--movers", drive.movers_option, "--seed", drive.seed, "--time", args.time, "--late", args.late]
+    words += ["--config", args.config] if args.config else []
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1) or not (folder / "sim.json").stat().st_size:
         sys.exit(f"{drive.name}: {' '.join(str(w) for w in words)}: exit {done.returncode}\n{done.stderr}")
@@ -334,6 +353,8 @@ COLUMNS = {  # of a row: how it is printed, from its figures
     "/ alone": ("over_alone_median", ">7.3f"),
     "replans": ("replans_mean", ">7.1f"),
     "stops": ("stops_mean", ">5.2f"),
+    "lapses": ("lapses", ">6"),
+    "s": ("seconds_mean", ">6.1f"),
     "ms p50": ("ms_p50", ">7.3f"),
     "ms p99": ("ms_p99", ">7.3f"),
     "ms max": ("ms_max", ">7.1f"),
